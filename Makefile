@@ -15,6 +15,8 @@ MODE.tsan    := -O1 -g -fsanitize=thread
 MARCH.release := -O3 -fno-tree-vectorize -fno-stack-protector
 # a floor is followed by short loops over the orders of a series
 FLOOR.release := -O3 -funroll-loops
+# passes over samples, in vectors
+NOISE.release := -O3
 # rotations of two rows of a building's shapes
 MODES.release := -O3
 WARN     := -Wall -Wextra -Werror -Wmissing-prototypes -Wshadow -Wvla -Wno-psabi
@@ -119,6 +121,8 @@ $(B)/%_w4.o: CFLAGS += $(LANES.w4)
 $(B)/%_w8.o: CFLAGS += $(LANES.w8)
 $(B)/engine/exact/exact_%.o: CFLAGS += $(MARCH.$(MODE))
 $(B)/engine/exact/chain_%.o: CFLAGS += $(MARCH.$(MODE))
+$(B)/engine/ground/noise_%.o: CFLAGS += $(NOISE.$(MODE))
+$(B)/engine/ground/normals_%.o: CFLAGS += $(NOISE.$(MODE))
 $(B)/engine/floor/oscillator_bank_%.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/floor/floor_pieces.o: CFLAGS += $(FLOOR.$(MODE))
 $(B)/engine/scene/modes.o: CFLAGS += $(MODES.$(MODE))

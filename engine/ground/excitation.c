@@ -1,12 +1,14 @@
-/* The table of excitations.  Noise is shaped by a trapezoid in time and scaled to its peak. */
+/* The table of excitations.  */
 #include "engine/ground/excitation.h"
 
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
+#include <string.h>
 
 #include "engine/ground/kanai_tajimi.h"
-#include "engine/ground/normals.h"
+#include "engine/ground/largest.h"
+#include "engine/ground/noise.h"
 #include "engine/numeric/cpu_width.h"
 #include "engine/numeric/elementary.h"
 
@@ -42,90 +44,51 @@ static int suite_samples(const struct pound_excitation *e)
 	return most;
 }
 
-/* a[i] times a trapezoid: up from 0 over the first `rise` of the time, down to 0 over the last `fall` */
-static void shape(double rise, double fall, int n, double *a)
-{
-	const double up = rise * (n - 1), down = fall * (n - 1);
-	const double upward = 1 / up, downward = 1 / down;
-	for (int i = 0; i < up; i++)
-		a[i] *= i * upward;
-	for (int i = 0; i < down; i++)
-		a[n - 1 - i] *= i * downward;
-}
-
 /* Largest |a|, n >= 1. */
 double pound_excitation_largest(int n, const double *a)
 {
-	// in parts, as each comparison waits for the one before it
-	enum { PARTS = 8 };
-	double most[PARTS] = {0};
-	int i = 0;
-	for (; i + PARTS <= n; i += PARTS)
-		for (int k = 0; k < PARTS; k++)
-			most[k] = fabs(a[i + k]) > most[k] ? fabs(a[i + k]) : most[k];
-	for (int k = 0; k < PARTS; k++)
-		most[0] = most[k] > most[0] ? most[k] : most[0];
-	for (; i < n; i++)
-		most[0] = fabs(a[i]) > most[0] ? fabs(a[i]) : most[0];
-	return most[0];
+	return ground_largest(n, a);
 }
 
-/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small */
-static void scale(double peak, int n, double *a)
+/* The ground motion that noise is made to. */
+static struct pound_noise noise_of(const struct pound_signal *signal, const struct pound_filter *filter, int n)
 {
-	const double largest = pound_excitation_largest(n, a);
-	if (largest > 0)
-		for (int i = 0; i < n; i++)
-			a[i] = a[i] / largest * peak;
-}
-
-/* noise to a ground motion */
-static void finish(const struct pound_excitation *e, int n, double *a)
-{
-	shape(e->rise, e->fall, n, a);
-	scale(e->peak, n, a);
+	const struct pound_excitation *e = signal->excitation;
+	return (struct pound_noise){.filter = filter,
+	                            .stream = signal->noise,
+	                            .n = n,
+	                            .a = signal->a,
+	                            .rise = e->rise,
+	                            .fall = e->fall,
+	                            .peak = e->peak};
 }
 
 static void kanai_tajimi(const struct pound_signal *signals, int n)
 {
-	struct pound_filtered coloured[POUND_SIGNALS_MAX];
-	struct pound_filter filter;
-	double made[3] = {-1, -1, -1}; /* what the filter is made of: signals of a row of the design share it */
+	struct pound_noise made[POUND_SIGNALS_MAX];
+	struct pound_filter filters[POUND_SIGNALS_MAX], *filter = filters - 1;
+	double of[3] = {-1, -1, -1}; /* what the filter is made of: signals of a row of the design share it */
 	for (int j = 0; j < n; j++) {
 		const struct pound_excitation *e = signals[j].excitation;
-		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
-		                         e->high_pass_ratio};
-		if (memcmp(made, asked, sizeof made) != 0) {
-			memcpy(made, asked, sizeof made);
-			pound_filter_init(&filter, made[0], made[1], made[2]);
+		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio, e->high_pass_ratio};
+		if (memcmp(of, asked, sizeof of) != 0) {
+			memcpy(of, asked, sizeof of);
+			pound_filter_init(++filter, of[0], of[1], of[2]);
 		}
 		// by their length, so that those side by side end together
 		const int samples = cycles_samples(e);
 		int at = j;
-		for (; at > 0 && coloured[at - 1].n > samples; at--)
-			coloured[at] = coloured[at - 1];
-		coloured[at] = (struct pound_filtered){
-		    .filter = filter, .noise = signals[j].noise, .n = samples, .a = signals[j].a};
+		for (; at > 0 && made[at - 1].n > samples; at--)
+			made[at] = made[at - 1];
+		made[at] = noise_of(&signals[j], filter, samples);
 	}
-	pound_filtered_noise_fill(pound_dispatch_width(0), coloured, n);
-	for (int j = 0; j < n; j++)
-		finish(signals[j].excitation, cycles_samples(signals[j].excitation), signals[j].a);
+	pound_noise_fill(pound_dispatch_width(0), made, n);
 }
 
 static void white_noise(const struct pound_signal *signal, int one)
 {
-	(void)one;
-	const struct pound_excitation *e = signal->excitation;
-	const int n = duration_samples(e);
-	double *a = signal->a;
-	double z[NOISE_WORDS][NOISE_CHUNK];
-	for (int i = 0; i < n; i++) {
-		const int l = i / NOISE_WORDS % NOISE_CHUNK, w = i % NOISE_WORDS;
-		if (l == 0 && w == 0)
-			pound_normals_fill(pound_dispatch_width(0), signal->noise, (uint32_t)(i / NOISE_WORDS), z);
-		a[i] = z[w][l];
-	}
-	finish(e, n, a);
+	const struct pound_noise made = noise_of(signal, NULL, duration_samples(signal->excitation));
+	pound_noise_fill(pound_dispatch_width(0), &made, one);
 }
 
 static void harmonic(const struct pound_signal *signal, int one)

@@ -2,8 +2,6 @@
 #ifndef KANAI_TAJIMI_H
 #define KANAI_TAJIMI_H
 
-#include "engine/numeric/random.h"
-
 enum { FILTER_STATES = 4 };
 
 /* One normal number z a sample, and the first four for the state before the first sample:  x = start (z_0, z_1, z_2, z_3),
@@ -20,22 +18,5 @@ struct pound_filter {
 
 /* theta: 2 pi filter frequency * sample step; white noise of intensity 1 per sample step */
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio);
-
-/* a signal to be made: the stationary output of a filter of its own */
-struct pound_filtered {
-	struct pound_filter filter;
-	struct pound_stream noise;
-	int n;
-	double *a; /* (n) */
-};
-
-/* The same bits for any width of cpu_width.h, and whichever signals are beside.  (n) */
-void pound_filtered_noise_fill(int width, const struct pound_filtered *signals, int n);
-
-/* filtered_noise.inl, compiled once for each */
-void pound_filtered_noise_w8(const struct pound_filtered *signals, int n);
-void pound_filtered_noise_w4(const struct pound_filtered *signals, int n);
-void pound_filtered_noise_w1(const struct pound_filtered *signals, int n);
-void pound_filtered_noise_portable(const struct pound_filtered *signals, int n);
 
 #endif

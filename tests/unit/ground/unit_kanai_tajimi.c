@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "engine/ground/kanai_tajimi.h"
+#include "engine/ground/noise.h"
 #include "engine/numeric/cpu_width.h"
 #include "tests/support/check.h"
 
@@ -33,7 +33,7 @@ static struct pound_filter filter_of(int i)
 
 static void filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
-	pound_filtered_noise_fill(pound_dispatch_width(0), &(struct pound_filtered){*f, noise, n, a}, 1);
+	pound_noise_fill(pound_dispatch_width(0), &(struct pound_noise){.filter = f, .stream = noise, .n = n, .a = a}, 1);
 }
 
 /* the four poles of the continuous filter */
@@ -344,18 +344,21 @@ static void a_signal_has_the_same_bits_whatever_is_beside_it(void **state)
 	(void)state;
 	enum { MOST = 19, LONGEST = 200 };
 	static double alone[MOST][LONGEST], together[MOST][LONGEST + 1];
-	struct pound_filtered signals[MOST];
+	struct pound_filter filters[CASES];
+	for (int i = 0; i < CASES; i++)
+		filters[i] = filter_of(i);
+	struct pound_noise signals[MOST];
 	for (int n = 1; n <= MOST; n++)
 		for (int width = pound_dispatch_width(0); width < POUND_WIDTHS; width++) {
 			for (int j = 0; j < n; j++) {
-				signals[j] = (struct pound_filtered){filter_of(j % CASES), stream_of(j),
-				                                     1 + 37 * j * j % LONGEST, together[j]};
+				signals[j] = (struct pound_noise){&filters[j % CASES], stream_of(j),
+				                                     1 + 37 * j * j % LONGEST, together[j], 0.2, 0.3, j % 3};
 				together[j][signals[j].n] = 12345;
-				struct pound_filtered one = signals[j];
+				struct pound_noise one = signals[j];
 				one.a = alone[j];
-				pound_filtered_noise_fill(POUND_WIDTH_PORTABLE, &one, 1);
+				pound_noise_fill(POUND_WIDTH_PORTABLE, &one, 1);
 			}
-			pound_filtered_noise_fill(width, signals, n);
+			pound_noise_fill(width, signals, n);
 			for (int j = 0; j < n; j++) {
 				assert_memory_equal(together[j], alone[j], sizeof(double) * (size_t)signals[j].n);
 				assert_true(together[j][signals[j].n] == 12345);
