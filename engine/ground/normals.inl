@@ -26,23 +26,36 @@ LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NO
 	const vu zero = {0};
 	for (int l = 0; l < NOISE_CHUNK; l++)
 		w[0][l] = counter.v[0] + (uint32_t)l;
-	for (int l = 0; l < NOISE_CHUNK; l += W) {
-		vu x0 = *(vu *)&w[0][l], x1 = zero + counter.v[1], x2 = zero + counter.v[2], x3 = zero + counter.v[3];
+	// two vectors at a time, as each round waits for the one before
+	enum { TWO = 2 };
+	for (int l = 0; l < NOISE_CHUNK; l += TWO * W) {
+		vu x0[TWO], x1[TWO], x2[TWO], x3[TWO];
+		for (int t = 0; t < TWO; t++) {
+			x0[t] = *(vu *)&w[0][l + t * W];
+			x1[t] = zero + counter.v[1];
+			x2[t] = zero + counter.v[2];
+			x3[t] = zero + counter.v[3];
+		}
 		uint32_t k0 = key.v[0], k1 = key.v[1];
 		// words in 64 bits, so that vectors keep them in place; the upper halves are rubbish between rounds
 #pragma GCC unroll 10
 		for (int round = 0; round < 10; round++) {
-			const vu p0 = vproduct(x0, zero + PHILOX_M4x32_0), p1 = vproduct(x2, zero + PHILOX_M4x32_1);
-			x0 = p1 >> 32 ^ x1 ^ k0;
-			x1 = p1;
-			x2 = p0 >> 32 ^ x3 ^ k1;
-			x3 = p0;
+#pragma GCC unroll 2
+			for (int t = 0; t < TWO; t++) {
+				const vu p0 = vproduct(x0[t], zero + PHILOX_M4x32_0), p1 = vproduct(x2[t], zero + PHILOX_M4x32_1);
+				x0[t] = p1 >> 32 ^ x1[t] ^ k0;
+				x1[t] = p1;
+				x2[t] = p0 >> 32 ^ x3[t] ^ k1;
+				x3[t] = p0;
+			}
 			k0 += PHILOX_W32_0;
 			k1 += PHILOX_W32_1;
 		}
-		const vu x[NOISE_WORDS] = {x0, x1, x2, x3};
-		for (int i = 0; i < NOISE_WORDS; i++)
-			*(vu *)&w[i][l] = x[i] & UINT32_MAX;
+		for (int t = 0; t < TWO; t++) {
+			const vu x[NOISE_WORDS] = {x0[t], x1[t], x2[t], x3[t]};
+			for (int i = 0; i < NOISE_WORDS; i++)
+				*(vu *)&w[i][l + t * W] = x[i] & UINT32_MAX;
+		}
 	}
 }
 
