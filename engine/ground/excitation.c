@@ -51,7 +51,8 @@ double pound_excitation_largest(int n, const double *a)
 }
 
 /* The ground motion that noise is made to. */
-static struct pound_noise noise_of(const struct pound_signal *signal, const struct pound_filter *filter, int n)
+static struct pound_noise noise_of(const struct pound_signal *signal, const struct pound_filter *filter,
+                                   int n)
 {
 	const struct pound_excitation *e = signal->excitation;
 	return (struct pound_noise){.filter = filter,
@@ -70,7 +71,8 @@ static void kanai_tajimi(const struct pound_signal *signals, int n)
 	double of[3] = {-1, -1, -1}; /* what the filter is made of: signals of a row of the design share it */
 	for (int j = 0; j < n; j++) {
 		const struct pound_excitation *e = signals[j].excitation;
-		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio, e->high_pass_ratio};
+		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
+		                         e->high_pass_ratio};
 		if (memcmp(of, asked, sizeof of) != 0) {
 			memcpy(of, asked, sizeof of);
 			pound_filter_init(++filter, of[0], of[1], of[2]);

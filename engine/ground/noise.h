@@ -7,8 +7,9 @@
 
 /* a signal to be made */
 struct pound_noise {
-	const struct pound_filter *filter; /* the signal is its stationary output; NULL: white noise of variance 1 */
-	struct pound_stream stream;        /* of its normal numbers */
+	const struct pound_filter
+	    *filter;                /* the signal is its stationary output; NULL: white noise of variance 1 */
+	struct pound_stream stream; /* of its normal numbers */
 	int n;
 	double *a;         /* (n) */
 	double rise, fall; /* of the trapezoid, as shares of the time */

@@ -133,7 +133,8 @@ static void scale(double peak, int n, double *a)
 void POUND_NOISE(const struct pound_noise *signals, int n)
 {
 	for (int first = 0, end; first < n; first = end) {
-		for (end = first + 1; end < n && end - first < W && signals[first].filter && signals[end].filter; end++)
+		for (end = first + 1; end < n && end - first < W && signals[first].filter && signals[end].filter;
+		     end++)
 			;
 		if (signals[first].filter)
 			filtered_run(&signals[first], end - first);

@@ -42,7 +42,8 @@ LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NO
 		for (int round = 0; round < 10; round++) {
 #pragma GCC unroll 2
 			for (int t = 0; t < TWO; t++) {
-				const vu p0 = vproduct(x0[t], zero + PHILOX_M4x32_0), p1 = vproduct(x2[t], zero + PHILOX_M4x32_1);
+				const vu p0 = vproduct(x0[t], zero + PHILOX_M4x32_0),
+				         p1 = vproduct(x2[t], zero + PHILOX_M4x32_1);
 				x0[t] = p1 >> 32 ^ x1[t] ^ k0;
 				x1[t] = p1;
 				x2[t] = p0 >> 32 ^ x3[t] ^ k1;
@@ -78,12 +79,16 @@ void POUND_NORMALS(struct pound_stream stream, uint32_t first, double z[NOISE_WO
 {
 	alignas(sizeof(vu)) uint64_t word[NOISE_WORDS][NOISE_CHUNK];
 	words(stream, first, word);
+	// a root waits longest: those of all draws before the angles
+	double radius[NOISE_WORDS][NOISE_CHUNK];
+	for (int w = 0; w < NOISE_WORDS; w += 2)
+		for (int l = 0; l < NOISE_CHUNK; l++)
+			radius[w][l] = sqrt(-2 * pound_elementary_log(fraction(word[w][l])));
 	for (int w = 0; w < NOISE_WORDS; w += 2)
 		for (int l = 0; l < NOISE_CHUNK; l++) {
 			double sine, cosine;
-			const double radius = sqrt(-2 * pound_elementary_log(fraction(word[w][l])));
 			pound_elementary_sincos(fraction(word[w + 1][l]), &sine, &cosine);
-			z[w][l] = radius * cosine;
-			z[w + 1][l] = radius * sine;
+			z[w][l] = radius[w][l] * cosine;
+			z[w + 1][l] = radius[w][l] * sine;
 		}
 }

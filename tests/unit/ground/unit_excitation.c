@@ -154,7 +154,8 @@ static void kanai_tajimi_noise_is_the_filter_output_scaled(void **state)
 	const int n = pound_excitation_samples(&e);
 	struct pound_filter f;
 	pound_filter_init(&f, 2 * M_PI * e.frequency_hz * e.time_step, e.damping_ratio, e.high_pass_ratio);
-	pound_noise_fill(pound_dispatch_width(0), &(struct pound_noise){.filter = &f, .stream = noise, .n = n, .a = b}, 1);
+	pound_noise_fill(pound_dispatch_width(0),
+	                 &(struct pound_noise){.filter = &f, .stream = noise, .n = n, .a = b}, 1);
 	fill(&e, noise, a);
 	const double most = largest(b, n);
 	for (int k = 0; k < n; k++)

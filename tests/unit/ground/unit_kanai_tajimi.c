@@ -33,7 +33,8 @@ static struct pound_filter filter_of(int i)
 
 static void filter_run(const struct pound_filter *f, struct pound_stream noise, int n, double *a)
 {
-	pound_noise_fill(pound_dispatch_width(0), &(struct pound_noise){.filter = f, .stream = noise, .n = n, .a = a}, 1);
+	pound_noise_fill(pound_dispatch_width(0),
+	                 &(struct pound_noise){.filter = f, .stream = noise, .n = n, .a = a}, 1);
 }
 
 /* the four poles of the continuous filter */
@@ -351,8 +352,13 @@ static void a_signal_has_the_same_bits_whatever_is_beside_it(void **state)
 	for (int n = 1; n <= MOST; n++)
 		for (int width = pound_dispatch_width(0); width < POUND_WIDTHS; width++) {
 			for (int j = 0; j < n; j++) {
-				signals[j] = (struct pound_noise){&filters[j % CASES], stream_of(j),
-				                                     1 + 37 * j * j % LONGEST, together[j], 0.2, 0.3, j % 3};
+				signals[j] = (struct pound_noise){&filters[j % CASES],
+				                                  stream_of(j),
+				                                  1 + 37 * j * j % LONGEST,
+				                                  together[j],
+				                                  0.2,
+				                                  0.3,
+				                                  j % 3};
 				together[j][signals[j].n] = 12345;
 				struct pound_noise one = signals[j];
 				one.a = alone[j];
