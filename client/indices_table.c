@@ -153,7 +153,7 @@ static void print_block(const struct estimates *of, int first, int end)
 	for (int row = 0; row < (of->n_rows ? of->n_rows : 1); row++) {
 		char path[PATH_SIZE], text[80], *label = row_label(of, row);
 		row_path(of, row, path);
-		table_text(table, *label ? label : "the signals");
+		table_text(table, *label ? label : "");
 		free(label);
 		for (int k = first; k < end; k++) {
 			interval(text, sizeof text, of->result, path, of->names[k], false);
@@ -308,7 +308,9 @@ static void print_inputs(const struct reading *result, const char *output)
 static void print_others(const struct reading *result, const char *output)
 {
 	print_estimates(result, output, "inputs", "input", " S1 ST ");
-	print_estimates(result, output, "excitation", "noise of", "");
+	// an input of a model of one's own has no path
+	const bool own = !reading_text(result, "%s/inputs/0/path", output);
+	print_estimates(result, output, "excitation", own ? "noise of replicates" : "noise of signals", "");
 }
 
 static void print_second_order(const struct reading *result, const char *output)

@@ -4,6 +4,7 @@
 #include "schema/result/result_json.h"
 
 #include <argp.h>
+#include <assert.h>
 #include <errno.h>
 #include <sched.h>
 #include <stdio.h>
@@ -381,14 +382,15 @@ static void formats_name(const struct command *command, struct argp_option *take
 static enum outcome command_run(const struct command *command, int argc, char **argv)
 {
 	struct argp_option taken[N_OPTIONS + 1] = {0};
-	char name[32], text[400], formats[80];
+	char name[32], text[1000], formats[80];
 	for (int i = 0, n = 0; i < N_OPTIONS; i++)
 		if (strchr(command->takes, OPTIONS[i].key))
 			taken[n++] = OPTIONS[i];
 	formats_name(command, taken, sizeof formats, formats);
 	snprintf(name, sizeof name, "pound %s", command->name);
-	snprintf(text, sizeof text, "%c%s.%s%s", command->help[0] - 'a' + 'A', command->help + 1,
-	         *command->more ? "  " : "", command->more);
+	const int length = snprintf(text, sizeof text, "%c%s.%s%s", command->help[0] - 'a' + 'A',
+	                            command->help + 1, *command->more ? "  " : "", command->more);
+	assert(length < (int)sizeof text);
 	argv[0] = name;
 	const char *url = getenv("POUND_URL");
 	struct parsing parsing = {

@@ -177,6 +177,11 @@ static void print_output(const struct summary *summary, int output)
 	if (isfinite(noise))
 		printf(", noise %.2g %%", 100 * noise);
 	putchar('\n');
+	// what makes intervals too narrow is said last
+	const char *note = reading_text(result, "%s/note", at),
+	           *few = note ? strstr(note, "few rows hold") : NULL;
+	if (few)
+		table_prose(4, few);
 	for (int j = 0; j < summary->n_inputs; j++) {
 		int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
@@ -202,8 +207,11 @@ static void print_output(const struct summary *summary, int output)
 
 static void print_outputs(const struct summary *summary)
 {
-	puts("\nShare of an output's variance due to an input alone (S1), to an input with its\n"
-	     "interactions (ST), to the randomness of motions (noise); +-: 95 % interval.");
+	// an input of a model of one's own has no path
+	const bool own = !reading_text(summary->result, "/cells/0/outputs/0/inputs/0/path");
+	printf("\nShare of an output's variance due to an input alone (S1), to an input with its\n"
+	       "interactions (ST), to the randomness of %s (noise); +-: 95 %% interval.\n",
+	       own ? "replicates" : "motions");
 	for (int o = 0; o < summary->n_outputs; o++)
 		print_output(summary, o);
 }

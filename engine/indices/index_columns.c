@@ -252,8 +252,24 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	}
 }
 
+static double beyond(double share)
+{
+	return fmax(0.0, fmax(-share, share - 1.0));
+}
+
+/* The first of two estimates made by few rows, unless it is beyond [0, 1] by more than sampling errors of its kind are, and the other
+ * by less: then the other's value, and the intervals of both, as neither is wide enough.  One large output that the polynomial
+ * misses makes a total far below 0 or above 1. */
+static struct pound_estimate nearer_a_share(struct pound_estimate p, struct pound_estimate q)
+{
+	const double most = 0.05;
+	if (!(beyond(p.value) > most && beyond(q.value) < beyond(p.value)))
+		return p;
+	return (struct pound_estimate){q.value, fmin(p.low, q.low), fmax(p.high, q.high)};
+}
+
 /* Totals by the polynomial or by pick-freeze; where few rows decide, which make plain intervals too narrow by chance, by the
- * former. */
+ * former if it is a share. */
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
@@ -263,7 +279,7 @@ static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 	narrower(s, plain, s->closed.total, into);
 	for (int j = 0; j < d; j++) {
 		if (heavy && plain[j].high > plain[j].low && s->closed.total_rows[j] < ROWS_BEHIND)
-			into[j] = s->closed.total[j];
+			into[j] = nearer_a_share(s->closed.total[j], plain[j]);
 		if (plain[j].high > plain[j].low)
 			behind_take(s, into[j], s->closed.total_rows[j]);
 	}

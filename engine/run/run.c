@@ -565,6 +565,9 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    pound_index_columns_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
 	if (pound_stopped(run->stop))
 		return;
+	// replicates of a model of one's own are fresh by their nature
+	if (c->study->elsewhere)
+		into->indices[output].notes &= ~(1u << POUND_NOTE_FRESH_SIGNALS);
 	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
 	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {

@@ -10,7 +10,8 @@
  *
  * Given    index   the one that the sampling and the integration may be wrong about most, in words
  */
-static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE], const char *index)
+static void write_errors(struct writer *w, const struct pound_study *study,
+                         const double errors[POUND_ERROR_NONE], const char *index)
 {
 	enum pound_error dominant = pound_accuracy_dominant(errors);
 	writer_object(w, "errors", WRITER_LINE);
@@ -20,16 +21,19 @@ static void write_errors(struct writer *w, const double errors[POUND_ERROR_NONE]
 	writer_text(w, "dominant", pound_error_name(dominant));
 	if (dominant == POUND_ERROR_NONE)
 		return;
-	static const struct {
+	const struct {
 		const char *sentence;
 		bool of_index;
 	} notes[] = {
 	    [POUND_ERROR_SAMPLING] = {"The number of rows is the largest source of error: the largest half-width "
 	                              "of an interval is %.2g, of ",
 	                              true},
-	    [POUND_ERROR_EXCITATION] = {"The number of signals may be the largest source of error: their noise "
-	                                "adds at most %.2g to the half-width of an interval",
-	                                false},
+	    [POUND_ERROR_EXCITATION] =
+	        {study->elsewhere ? "The number of replicates may be the largest source of error: their "
+	                            "noise adds at most %.2g to the half-width of an interval"
+	                          : "The number of signals may be the largest source of error: their noise "
+	                            "adds at most %.2g to the half-width of an interval",
+	         false},
 	    [POUND_ERROR_INTEGRATION] = {"Integration is the largest source of error: up to %.2g in ", true},
 	    [POUND_ERROR_FAILED_ROWS] = {"Failed rows are the largest source of error: if all were like the most "
 	                                 "extreme valid row, an index would change by up to %.2g",
@@ -105,7 +109,7 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 	char index[160] = "an index";
 	least_certain(study, accuracy, index, sizeof index);
-	write_errors(w, accuracy->errors, index);
+	write_errors(w, study, accuracy->errors, index);
 	writer_end(w);
 }
 
@@ -145,7 +149,7 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
 	writer_number(w, "difference_largest", largest);
-	write_errors(w, errors, "an index");
+	write_errors(w, study, errors, "an index");
 	writer_end(w);
 }
 
