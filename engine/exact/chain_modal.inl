@@ -483,7 +483,7 @@ static void notes_look(struct chain *c)
 	f->at[0].d = c->d;
 	f->at[0].v = c->v;
 	c->n_links = 0;
-	c->edged = false;
+	c->edged = c->warp.on = false;
 	c->pace = 1;
 	c->reach = 0;
 	for (int k = f->notes - 1; k >= 0; k--)

@@ -379,7 +379,7 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
 	memset(c, 0, offsetof(struct chain, modal_motion));
 	c->work_in = c->work_gap = c->work_low = c->work_top = c->jump = 0;
-	c->after_event = false;
+	c->after_event = c->warp.on = false;
 	memset(&c->work_story, 0, sizeof c->work_story);
 	memset(c->work_link, 0, sizeof c->work_link);
 	c->task = task;

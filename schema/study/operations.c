@@ -47,9 +47,6 @@ static const double CHECKED = 2;
  * with what gap they do not stay together any more. */
 static const double NEAR = 0.4, RIDING = 0.01;
 
-/* radians of the adaptive solver that take as long as to start again at a sample */
-static const double ADAPT_START = 0.55;
-
 /* [rad] of a step of a chain */
 static const double CHAIN_RADIANS = 4;
 
@@ -268,8 +265,8 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
 		c->of[step_of[solver->method]] +=
 		    marches * samples * fmax(1, MEAN(study, excitation.time_step, 1) / solver->step);
 	} else {
-		// a sample starts a step as half a radian does
-		c->of[ADAPT] += turns * pow(solver->tolerance, -1. / 12) + ADAPT_START * marches * samples;
+		c->of[ADAPT_START] += marches * samples;
+		c->of[ADAPT] += turns * pow(solver->tolerance, -1. / 12);
 		c->of[FOLLOW] += pounded * b.near * radians * b.touching * pow(b.ratio, 0.25);
 		c->of[TURN] += pounded * samples * turned(&b, MEAN(study, excitation.time_step, 1));
 	}

@@ -38,7 +38,8 @@ enum operation {
 	START,       /* sample of a march by another solver, */
 	NEWMARK,     /* ... step of one, */
 	CENTRAL,     /* ... of the other, */
-	ADAPT,       /* ... radian of the adaptive one, by its tolerance, */
+	ADAPT_START, /* sample of a march by the adaptive one, which starts a step there, */
+	ADAPT,       /* ... radian of it, by its tolerance, */
 	FOLLOW,      /* ... and radian in which the bodies are near each other, by the contact's frequency */
 	ROW_STEP,    /* step of a floor of a row by a fixed step, */
 	ROW_ADAPT,   /* ... and its radian of the fastest floors by the adaptive solver */

@@ -431,7 +431,44 @@ static void the_largest_row_of_straight_contacts_takes_a_mebibyte(void **state)
 	             POUND_CHAIN_SCRATCH / 1024);
 }
 
+/* A linear building that goes by maps from one sample to the next, in work space that held anything before. */
+static void what_work_space_held_before_is_not_read(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 201, FLOORS = 4, STRAIGHT = 1 << 20, FILLS = 3 };
+	static const int fills[FILLS] = {0, 0x5a, 0xff};
+	static struct pound_chain_floor floors[FLOORS];
+	static double ground[SAMPLES], measures[FILLS][FLOORS][POUND_FLOOR_MEASURES];
+	for (int i = 0; i < FLOORS; i++)
+		floors[i] = (struct pound_chain_floor){
+		    .mass = 1, .dashpot = 1, .mass_damping = 0.1, .story = {.stiffness = 900}, .base = i == 0};
+	for (int t = 0; t < SAMPLES; t++)
+		ground[t] = -4 * sin(0.15 * t);
+	for (int n = 1; n <= FLOORS; n++) {
+		const struct pound_chain_task task = {
+		    .ground = ground,
+		    .n_samples = SAMPLES,
+		    .time_step = 0.01,
+		    .n_floors = n,
+		    .floors = floors,
+		    .asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS};
+		for (int f = 0; f < FILLS; f++) {
+			unsigned char *scratch = aligned_alloc(64, POUND_CHAIN_SCRATCH);
+			assert_non_null(scratch);
+			memset(scratch, fills[f], POUND_CHAIN_SCRATCH);
+			struct pound_chain_result result = {.floors = measures[f][0]};
+			assert_true(pound_chain_lanes(0, &task, &result, 1, scratch, NULL));
+			assert_int_equal(result.status, POUND_OK);
+			for (size_t j = STRAIGHT; j < POUND_CHAIN_SCRATCH; j++)
+				assert_int_equal(scratch[j], fills[f]);
+			assert_memory_equal(measures[f], measures[0], sizeof measures[0]);
+			free(scratch);
+		}
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(the_largest_row_of_straight_contacts_takes_a_mebibyte),
+           cmocka_unit_test(what_work_space_held_before_is_not_read),
            cmocka_unit_test(two_and_two_stories_come_out),
            cmocka_unit_test(three_and_two_stories_without_tension_come_out),
            cmocka_unit_test(elastoplastic_stories_come_out),
