@@ -96,6 +96,7 @@ struct pound_contact_response {
 #undef X
 	double speed_max; /* largest speed at which a contact begins [m/s] */
 	double lost;      /* in contacts [J]; NAN as above */
+	double gap_needed; /* largest closing displacement without contact, NAN: not asked [m] */
 };
 
 /* One signal's response of a row of buildings. */

@@ -438,6 +438,8 @@ bool pound_output_observes(int row,
                            const struct pound_scene *scene); /* it reads more than every solver gives */
 bool pound_output_has_ordinates(int row); /* has a value for each frequency of the spectrum */
 bool pound_output_has_places(int row, const struct pound_scene *scene); /* and once for each place */
+bool pound_output_has_contacts(int row, const struct pound_scene *scene);
+int pound_study_contact(const struct pound_study *study, int output);  /* number of its contact; -1: none */
 int pound_study_ordinate(const struct pound_study *study, int output); /* number of its frequency; -1: none */
 int pound_study_place(const struct pound_study *study, int output);    /* number of its place; -1: none */
 

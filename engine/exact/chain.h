@@ -55,6 +55,8 @@ enum pound_chain_asked {
 	POUND_CHAIN_FORCES = 8,
 	POUND_CHAIN_ENERGY =
 	    16, /* balance and losses; no whole samples are passed at once: such a run takes longer */
+	POUND_CHAIN_CLOSING =
+	    32, /* with displacements: no contact acts, but how far its sides close is followed; likewise */
 };
 
 /* The motion of an observed floor over a piece, by the share s of it that is gone: coefficients of powers of s. */
@@ -133,6 +135,7 @@ enum pound_link_measure {
 	POUND_LINK_FIRST_SPEED, /* of approach there; 0: none [m/s] */
 	POUND_LINK_SPEED_MAX,   /* largest one of all contacts [m/s] */
 	POUND_LINK_LOST,        /* work on the contact; one still open at the end counts with what it holds [J] */
+	POUND_LINK_CLOSING_MAX, /* largest displacement of the left side less that of the right one, 0 at rest [m] */
 	POUND_LINK_MEASURES
 };
 

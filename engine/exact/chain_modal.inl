@@ -152,7 +152,7 @@ static void modal_start(struct chain *c)
 	struct modal_motion *f = &c->modal_motion;
 	f->wait = f->refused = f->notes = 0;
 	f->room = KEPT / (NOTE_COLUMNS * c->wide) < NOTES ? KEPT / (NOTE_COLUMNS * c->wide) : NOTES;
-	f->can = !(task->asked & POUND_CHAIN_ENERGY) && !task->observer;
+	f->can = !(task->asked & (POUND_CHAIN_ENERGY | POUND_CHAIN_CLOSING)) && !task->observer;
 	if (!f->can)
 		return;
 	for (int k = 0; k < 2; k++) // what is behind the last floor

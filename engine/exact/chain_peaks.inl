@@ -153,3 +153,25 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 	lanes_store(value, top);
 	*most = value[0];
 }
+
+/* Largest closing displacement of a link that does not act, whose floors' displacements are those of the step and of its end. */
+static void closing_keep(struct chain *c, struct link *l, double time)
+{
+	const struct enclosures *x = &c->displacement;
+	double fourth_max = 0, value[W];
+	for (int k = 0; k < l->n_ends; k++)
+		fourth_max = fma(fabs(l->weight[k]), x->fourth_max.at[l->floor[k]], fourth_max);
+	const struct enclosure enclosure = {vsplat(link_sum(l, x->u0.at)), vsplat(link_sum(l, x->v0.at)),
+	                                    vsplat(link_sum(l, x->u1.at)), vsplat(link_sum(l, x->v1.at)),
+	                                    vsplat(fourth_max)};
+	double *most = &l->measures[POUND_LINK_CLOSING_MAX];
+	*most = fmax(*most, link_sum(l, c->u.at));
+	const vm inside = vless(vsplat(*most), enclosure_reach(&enclosure)) & vmask(1);
+	if (!vany(inside))
+		return;
+	struct power series = {0};
+	for (int n = 0; n <= c->order; n++)
+		series.c[n] = vsplat(link_sum(l, c->displacements[n].at));
+	lanes_store(value, top_follow(&series, c->order, vsplat(time), vsplat(*most), vsplat(0), inside));
+	*most = value[0];
+}

@@ -159,6 +159,7 @@ struct chain {
 	struct pound_chain_result *result;
 	int n, wide; /* floors, and as many as whole vectors have */
 	int n_links, wide_links;
+	int n_watched; /* links whose sides do not act on each other; n_links is 0 then */
 	int buildings;
 	uint16_t first[POUND_CHAIN_FLOORS + 1]; /* floor of each building, and what follows the last */
 	bool edged;                             /* a law has more than one branch */
@@ -386,7 +387,8 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	c->result = result;
 	c->n = task->n_floors;
 	c->wide = whole_vectors(c->n);
-	c->n_links = task->n_links;
+	c->n_watched = task->asked & POUND_CHAIN_CLOSING ? task->n_links : 0;
+	c->n_links = task->n_links - c->n_watched;
 	c->wide_links = whole_vectors(c->n_links);
 	c->pace = 1;
 	c->next = 1;
@@ -401,9 +403,9 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	}
 	c->first[c->buildings] = (uint16_t)c->n;
 	chain_rates(c);
-	for (int j = 0; j < c->n_links; j++) {
+	for (int j = 0; j < task->n_links; j++) {
 		const int force = pound_contact_force(task->links[j].law.model);
-		c->curved |= force == POUND_FORCE_PRODUCT || force == POUND_FORCE_POWER;
+		c->curved |= c->n_links > 0 && (force == POUND_FORCE_PRODUCT || force == POUND_FORCE_POWER);
 		link_start(&c->link[j], task, j);
 		c->link[j].measures = &result->links[j * POUND_LINK_MEASURES];
 		memset(c->link[j].measures, 0, sizeof(double) * POUND_LINK_MEASURES);
@@ -496,6 +498,7 @@ static void chain_write(struct chain *c, enum pound_status status)
 	for (int j = 0; j < c->n_links; j++) {
 		double *m = c->link[j].measures;
 		m[POUND_LINK_TIME] = c->link[j].time;
+		m[POUND_LINK_CLOSING_MAX] = NAN;
 		if (!(asked & POUND_CHAIN_FORCES))
 			m[POUND_LINK_FORCE_MAX] = NAN;
 		if (m[POUND_LINK_CONTACTS] == 0)

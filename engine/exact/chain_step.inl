@@ -270,6 +270,8 @@ static void step_tops(struct chain *c, double time)
 		chain_displacements(c);
 		tops_keep(c, c->displacements, &c->displacement, &c->u, time, &c->top_displacement);
 	}
+	for (int j = 0; j < c->n_watched; j++)
+		closing_keep(c, &c->link[j], time);
 	if (asked & POUND_CHAIN_FORCES)
 		for (int j = 0; j < c->n_links; j++)
 			if (c->link[j].touching)

@@ -89,80 +89,71 @@ static bool always(const struct pound_scene *scene)
 /* ---- of rows of buildings ---- */
 
 static const struct pound_storey_response *storey_of(const struct pound_row_response *row,
-                                                     const struct pound_scene *scene,
-                                                     const struct pound_storey_place *place)
+                                                     const struct pound_scene *scene, int at)
 {
+	const struct pound_storey_place *place = &scene->places[at];
 	return &row->storeys[pound_row_first(scene, place->building) + place->storey - 1];
 }
 
-static double drift(const struct pound_row_response *row, const struct pound_scene *scene,
-                    const struct pound_storey_place *place)
+static double drift(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return storey_of(row, scene, place)->drift_max;
+	return storey_of(row, scene, at)->drift_max;
 }
 
-static double drift_free(const struct pound_row_response *row, const struct pound_scene *scene,
-                         const struct pound_storey_place *place)
+static double drift_free(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return storey_of(row, scene, place)->drift_max_free;
+	return storey_of(row, scene, at)->drift_max_free;
 }
 
-static double acceleration(const struct pound_row_response *row, const struct pound_scene *scene,
-                           const struct pound_storey_place *place)
+static double acceleration(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return storey_of(row, scene, place)->acceleration_max;
+	return storey_of(row, scene, at)->acceleration_max;
 }
 
-static double acceleration_free(const struct pound_row_response *row, const struct pound_scene *scene,
-                                const struct pound_storey_place *place)
+static double acceleration_free(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return storey_of(row, scene, place)->acceleration_max_free;
+	return storey_of(row, scene, at)->acceleration_max_free;
 }
 
 // as of one oscillator, a storey that never moves has no demand
-static double storey_demand(const struct pound_row_response *row, const struct pound_scene *scene,
-                            const struct pound_storey_place *place)
+static double storey_demand(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	const double value = storey_of(row, scene, place)->demand;
+	const double value = storey_of(row, scene, at)->demand;
 	return isnan(value) ? 0 : value;
 }
 
 static double storey_demand_free(const struct pound_row_response *row, const struct pound_scene *scene,
-                                 const struct pound_storey_place *place)
+                                 int at)
 {
-	const double value = storey_of(row, scene, place)->demand_free;
+	const double value = storey_of(row, scene, at)->demand_free;
 	return isnan(value) ? 0 : value;
 }
 
 /* The largest impulse of all contacts over the mass of building 0 and the frequency of its first mode [m]. */
-static double row_impulse(const struct pound_row_response *row, const struct pound_scene *scene,
-                          const struct pound_storey_place *place)
+static double row_impulse(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)place;
+	(void)at;
 	double most = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		most = fmax(most, row->contacts[k].impulse_max);
 	return most / row->impulse_scale;
 }
 
-static double top_free(const struct pound_row_response *row, const struct pound_scene *scene,
-                       const struct pound_storey_place *place)
+static double top_free(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)place;
+	(void)at;
 	return row->storeys[pound_row_storeys(scene, 0) - 1].displacement_max_free;
 }
 
-static double row_absent(const struct pound_row_response *row, const struct pound_scene *scene,
-                         const struct pound_storey_place *place)
+static double row_absent(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)row, (void)scene, (void)place;
+	(void)row, (void)scene, (void)at;
 	return 0;
 }
 
-static double row_one(const struct pound_row_response *row, const struct pound_scene *scene,
-                      const struct pound_storey_place *place)
+static double row_one(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)row, (void)scene, (void)place;
+	(void)row, (void)scene, (void)at;
 	return 1;
 }
 
@@ -230,67 +221,62 @@ static double touches(const struct pound_response *r, const struct pound_scene *
 }
 
 static double floor_displacement(const struct pound_row_response *row, const struct pound_scene *scene,
-                                 const struct pound_storey_place *place)
+                                 int at)
 {
-	return storey_of(row, scene, place)->displacement_max;
+	return storey_of(row, scene, at)->displacement_max;
 }
 
 static double floor_displacement_free(const struct pound_row_response *row, const struct pound_scene *scene,
-                                      const struct pound_storey_place *place)
+                                      int at)
 {
-	return storey_of(row, scene, place)->displacement_max_free;
+	return storey_of(row, scene, at)->displacement_max_free;
 }
 
-static double residual_drift(const struct pound_row_response *row, const struct pound_scene *scene,
-                             const struct pound_storey_place *place)
+static double residual_drift(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return fabs(storey_of(row, scene, place)->residual_drift);
+	return fabs(storey_of(row, scene, at)->residual_drift);
 }
 
 static double row_impulse_largest(const struct pound_row_response *row, const struct pound_scene *scene,
-                                  const struct pound_storey_place *place)
+                                  int at)
 {
-	(void)place;
+	(void)at;
 	double most = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		most = fmax(most, row->contacts[k].impulse_max);
 	return most;
 }
 
-static double row_force_largest(const struct pound_row_response *row, const struct pound_scene *scene,
-                                const struct pound_storey_place *place)
+static double row_force_largest(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)place;
+	(void)at;
 	double most = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		most = fmax(most, row->contacts[k].force_max);
 	return most;
 }
 
-static double row_contact_count(const struct pound_row_response *row, const struct pound_scene *scene,
-                                const struct pound_storey_place *place)
+static double row_contact_count(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)place;
+	(void)at;
 	double sum = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		sum += row->contacts[k].contact_count;
 	return sum;
 }
 
-static double row_contact_time(const struct pound_row_response *row, const struct pound_scene *scene,
-                               const struct pound_storey_place *place)
+static double row_contact_time(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	(void)place;
+	(void)at;
 	double sum = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		sum += row->contacts[k].contact_time;
 	return sum;
 }
 
-static double row_touches(const struct pound_row_response *row, const struct pound_scene *scene,
-                          const struct pound_storey_place *place)
+static double row_touches(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
-	return row_contact_count(row, scene, place) > 0;
+	return row_contact_count(row, scene, at) > 0;
 }
 
 static double gap_needed(const struct pound_response *r, const struct pound_scene *scene)
@@ -347,24 +333,26 @@ OF_FLOOR(lost_right, lost, 1)
 #undef OF_FLOOR
 
 static double floor_residual(const struct pound_row_response *row, const struct pound_scene *scene,
-                             const struct pound_storey_place *place)
+                             int at)
 {
+	const struct pound_storey_place *place = &scene->places[at];
+	const struct pound_storey_response *first = &row->storeys[pound_row_first(scene, place->building)];
 	double sum = 0;
-	for (int i = 1; i <= place->storey; i++)
-		sum += storey_of(row, scene, &(struct pound_storey_place){place->building, i})->residual_drift;
+	for (int i = 0; i < place->storey; i++)
+		sum += first[i].residual_drift;
 	return fabs(sum);
 }
 
 static double storey_lost(const struct pound_row_response *row, const struct pound_scene *scene,
-                          const struct pound_storey_place *place)
+                          int at)
 {
-	return storey_of(row, scene, place)->lost;
+	return storey_of(row, scene, at)->lost;
 }
 
 static double row_lost_contact(const struct pound_row_response *row, const struct pound_scene *scene,
-                               const struct pound_storey_place *place)
+                               int at)
 {
-	(void)place;
+	(void)at;
 	double sum = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		sum += row->contacts[k].lost;
@@ -372,20 +360,31 @@ static double row_lost_contact(const struct pound_row_response *row, const struc
 }
 
 static double row_work_in(const struct pound_row_response *row, const struct pound_scene *scene,
-                          const struct pound_storey_place *place)
+                          int at)
 {
-	(void)scene, (void)place;
+	(void)scene, (void)at;
 	return row->work_in;
 }
 
 static double row_approach(const struct pound_row_response *row, const struct pound_scene *scene,
-                           const struct pound_storey_place *place)
+                           int at)
 {
-	(void)place;
+	(void)at;
 	double most = 0;
 	for (int k = 0; k < pound_row_contacts(scene); k++)
 		most = fmax(most, row->contacts[k].speed_max);
 	return most;
+}
+
+static double row_gap_needed(const struct pound_row_response *row, const struct pound_scene *scene, int at)
+{
+	(void)scene;
+	return row->contacts[at].gap_needed;
+}
+
+static bool has_gaps(const struct pound_scene *scene)
+{
+	return !is_row(scene) || pound_row_contacts(scene) > 0;
 }
 
 static bool is_pair(const struct pound_scene *scene)
@@ -395,7 +394,7 @@ static bool is_pair(const struct pound_scene *scene)
 
 typedef double measure(const struct pound_response *, const struct pound_scene *);
 typedef double row_measure(const struct pound_row_response *, const struct pound_scene *,
-                           const struct pound_storey_place *);
+                           int at); /* number of its place or contact */
 
 static const struct output {
 	const char *name;
@@ -404,7 +403,7 @@ static const struct output {
 	bool (*applies)(const struct pound_scene *);
 	measure *of, *over; /* of two oscillators: the output is the mean of the one over that of the other */
 	row_measure *row, *row_over; /* of a row of buildings likewise */
-	bool places;                 /* of a row one output for each place */
+	bool places, contacts;       /* of a row one output for each place, for each contact */
 	bool ordinates;              /* one output for each frequency of the spectrum */
 	unsigned asks;               /* of enum pound_output_ask */
 } outputs[] = {
@@ -478,8 +477,10 @@ static const struct output {
      impulse_largest, one, row_impulse_largest, row_one, .asks = 0},
     {"peak_contact_force_n", "largest force that pushes in a contact [N]", "a contact", "a contact",
      bodies_meet, force, one, row_force_largest, row_one, .asks = POUND_ASKS_FORCES},
-    {"gap_needed_m", "largest closing displacement u_1 - u_2 of the bodies without contact [m]",
-     "two oscillators", "two oscillators", is_pair, gap_needed, one, .asks = POUND_ASKS_FREE_PAIR},
+    {"gap_needed_m",
+     "largest closing displacement u_1 - u_2 without contact, of the bodies or at each contact of a row [m]",
+     "", "a contact", has_gaps, gap_needed, one, row_gap_needed, row_one, .contacts = true,
+     .asks = POUND_ASKS_FREE_PAIR},
     {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
      "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_FREE_PAIR},
     {"peak_approach_speed_m_s", "largest speed at which a contact begins [m/s]", "a contact", "a contact",
@@ -567,15 +568,30 @@ bool pound_output_has_places(int row, const struct pound_scene *scene)
 	return scene->n_buildings > 0 && outputs[row].places;
 }
 
-/* The place of an output: how many of the study's before it are of the same row. */
-int pound_study_place(const struct pound_study *study, int output)
+bool pound_output_has_contacts(int row, const struct pound_scene *scene)
+{
+	return scene->n_buildings > 0 && outputs[row].contacts;
+}
+
+/* How many of the study's outputs before one are of the same row. */
+static int before(const struct pound_study *study, int output)
 {
 	int k = 0;
-	if (study->elsewhere || !pound_output_has_places(study->outputs[output], &study->scene))
-		return -1;
 	for (int o = 0; o < output; o++)
 		k += study->outputs[o] == study->outputs[output];
 	return k;
+}
+
+int pound_study_place(const struct pound_study *study, int output)
+{
+	const bool has = !study->elsewhere && pound_output_has_places(study->outputs[output], &study->scene);
+	return has ? before(study, output) : -1;
+}
+
+int pound_study_contact(const struct pound_study *study, int output)
+{
+	const bool has = !study->elsewhere && pound_output_has_contacts(study->outputs[output], &study->scene);
+	return has ? before(study, output) : -1;
 }
 
 bool pound_output_applies(int row, const struct pound_scene *scene)
@@ -594,8 +610,7 @@ void pound_outputs_measure(const struct pound_study *study, int output, const st
 		*denominator = row->over(outcome->pair, scene);
 		return;
 	}
-	const int k = pound_study_place(study, output);
-	const struct pound_storey_place *place = k < 0 ? NULL : &scene->places[k];
-	*numerator = row->row(outcome->row, scene, place);
-	*denominator = row->row_over(outcome->row, scene, place);
+	const int at = before(study, output);
+	*numerator = row->row(outcome->row, scene, at);
+	*denominator = row->row_over(outcome->row, scene, at);
 }

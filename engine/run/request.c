@@ -380,7 +380,8 @@ static void row_free(struct pound_request *request, int a)
 	const struct pound_study *study = request->campaign->study;
 	const struct pound_scene scene = row_scene(request, &request->asks[a]);
 	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a],
-	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0,
+	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0 ||
+	                       pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR,
 	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
 }
 
@@ -529,14 +530,20 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_FREE_PAIR; a--) { // the checks first
 		if (pound_stopped(stop))
 			return POUND_STOPPED;
-		const int known = request->march_keys.n;
-		if (request->asks[a].scene.n_buildings)
-			continue;
-		work->free_pair_runs.run += follow_free_pair(request, a) + request->march_keys.n - known;
+		const int known = marches_known(request);
+		bool followed = false;
+		if (request->asks[a].scene.n_buildings) {
+			const struct pound_scene scene = row_scene(request, &request->asks[a]);
+			pound_row_ask_closing(&request->rows, &scene, &request->row_asks[a],
+			                      &request->motions[request->asks[a].motion]);
+		} else
+			followed = follow_free_pair(request, a);
+		work->free_pair_runs.run += followed + marches_known(request) - known;
 		work->free_pair_runs.asked++;
 	}
 	pound_pairs_finish(&request->pairs);
 	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
+	status = status ? status : pound_row_run(&request->rows, stop);
 	if (status)
 		return status;
 	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);

@@ -43,7 +43,7 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 				marches += 2 + pound_scene_law(&scene, i)->corrections;
 			if (scene.n_buildings) {
 				storeys_put(campaign, cell, buildings, &scene);
-				pound_row_size_add(&size.rows, &scene);
+				pound_row_size_add(&size.rows, &scene, asked);
 			}
 			size.rows.scratch = models_vary(campaign->study) ? POUND_CHAIN_SCRATCH : size.rows.scratch;
 			size.asks++;

@@ -132,7 +132,8 @@ static struct pound_storey_response storey_of(const struct storey_known *k)
 	return r;
 }
 
-static struct pound_contact_response contact_of(const double *link, int e)
+/* Given    closing   its row of measures of the run without contact; NULL: not run */
+static struct pound_contact_response contact_of(const double *link, const double *closing, int e)
 {
 	return (struct pound_contact_response){.impulse_max = ldexp(link[POUND_LINK_IMPULSE_MAX], e),
 	                                       .force_max = ldexp(link[POUND_LINK_FORCE_MAX], e),
@@ -141,7 +142,9 @@ static struct pound_contact_response contact_of(const double *link, int e)
 	                                       .first_time = link[POUND_LINK_FIRST_TIME],
 	                                       .first_speed = ldexp(link[POUND_LINK_FIRST_SPEED], e),
 	                                       .speed_max = ldexp(link[POUND_LINK_SPEED_MAX], e),
-	                                       .lost = ldexp(link[POUND_LINK_LOST], 2 * e)};
+	                                       .lost = ldexp(link[POUND_LINK_LOST], 2 * e),
+	                                       .gap_needed =
+	                                           closing ? ldexp(closing[POUND_LINK_CLOSING_MAX], e) : NAN};
 }
 
 /* The storeys of one building; adds what is wrong with its marches. */
@@ -190,8 +193,10 @@ enum pound_status pound_row_response_of(const struct pound_row_asks *asks, const
 {
 	static const double open[POUND_LINK_MEASURES] = {0};
 	const struct pound_chain_result *with = ask->march < 0 ? NULL : &asks->results[ask->march];
+	const struct pound_chain_result *closing = ask->closing < 0 ? NULL : &asks->results[ask->closing];
 	const int floors = pound_row_floors(scene), contacts = pound_row_contacts(scene);
 	enum pound_status status = with ? with->status : POUND_OK;
+	status = status || !closing ? status : closing->status;
 	*response = (struct pound_row_response){.impulse_scale = ask->impulse_scale,
 	                                        .energy_residual = with ? with->energy_residual : NAN,
 	                                        .work_in = with ? ldexp(with->work_in, 2 * exponent) : 0,
@@ -202,7 +207,8 @@ enum pound_status pound_row_response_of(const struct pound_row_asks *asks, const
 		status = status ? status : of_building;
 	}
 	for (int k = 0; k < contacts; k++)
-		asks->contacts[k] = contact_of(with ? with->links + k * POUND_LINK_MEASURES : open, exponent);
+		asks->contacts[k] = contact_of(with ? with->links + k * POUND_LINK_MEASURES : open,
+		                               closing ? closing->links + k * POUND_LINK_MEASURES : NULL, exponent);
 	// the motion in its own scale is finite, but not all that is made of it need be
 	const bool over = beyond(&asks->storeys->drift_max, floors * STOREY_DOUBLES) ||
 	                  (contacts && beyond(&asks->contacts->impulse_max, contacts * CONTACT_DOUBLES));

@@ -33,20 +33,24 @@ static size_t march_scratch(const struct pound_scene *scene)
 	return most;
 }
 
-/* Adds what a sample of a scene takes at most. */
-void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene)
+/* Adds what a sample of a scene takes at most.
+ *
+ * Given    outputs_asked   of enum pound_output_ask
+ */
+void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene, unsigned outputs_asked)
 {
+	const int rows = outputs_asked & POUND_ASKS_FREE_PAIR ? 2 : 1; // marches of all buildings
 	const int floors = pound_row_floors(scene), links = pound_row_contacts(scene);
 	int before = 0; // floors of all marches without pounding
 	for (int b = 0; b < scene->n_buildings; b++) {
 		const int marches = 2 + pound_row_law(scene, b)->corrections, storeys = pound_row_storeys(scene, b);
 		before += marches * storeys;
 		size->tasks += storeys ? marches : 0;
-		size->modal += (marches + 1) * storeys * storeys;
+		size->modal += (marches + rows) * storeys * storeys;
 	}
-	size->tasks++;
-	size->floors += before + floors;
-	size->links += links;
+	size->tasks += rows;
+	size->floors += before + rows * floors;
+	size->links += rows * links;
 	size->yields += floors;
 	const size_t memory = pound_row_bytes(scene);
 	size->memory = memory > size->memory ? memory : size->memory;
@@ -265,7 +269,8 @@ void pound_row_ask_free(struct pound_row_asks *asks, const struct pound_scene *s
 	const bool all = response || may_miss(scene);
 	struct pound_storeys left;
 	pound_building_storeys(&scene->buildings[0], &left);
-	*ask = (struct pound_row_ask){.march = -1, .yields = asks->yields + asks->n_yields, .asked = asked};
+	*ask = (struct pound_row_ask){
+	    .march = -1, .closing = -1, .yields = asks->yields + asks->n_yields, .asked = asked};
 	asks->n_yields += pound_row_floors(scene);
 	for (int i = 0; i < left.n; i++)
 		ask->impulse_scale += left.mass[i];
@@ -452,6 +457,43 @@ static bool row_alike(const struct pound_scene *scene, const struct pound_chain_
 	return alike;
 }
 
+/* Lays all buildings, with the yield drifts that are known. */
+static void row_lay(struct pound_row_asks *asks, const struct pound_scene *scene,
+                    const struct pound_row_ask *ask, struct pound_chain_floor *floors)
+{
+	for (int b = 0; b < scene->n_buildings; b++) {
+		const bool linear = pound_law_linear(pound_row_law(scene, b)->type);
+		if (pound_row_storeys(scene, b) > 0)
+			building_lay(asks, scene, b, linear ? NULL : ask->yields + pound_row_first(scene, b),
+			             floors + pound_row_first(scene, b));
+	}
+}
+
+/* Asks for the run of all buildings together without contact.
+ *
+ * Test     unit_row_results: the_gap_needed_decides_which_signals_pound_in_rows
+ */
+void pound_row_ask_closing(struct pound_row_asks *asks, const struct pound_scene *scene,
+                           struct pound_row_ask *ask, const struct pound_motion *motion)
+{
+	struct pound_chain_floor *floors = asks->floors + asks->n_floors;
+	struct pound_link *links = asks->links + asks->n_links;
+	const int n_links = pound_row_contacts(scene);
+	if (n_links == 0)
+		return;
+	row_lay(asks, scene, ask, floors);
+	for (int k = 0; k < n_links; k++) {
+		link_lay(scene, k, floors, motion->exponent, &links[k]);
+		links[k].gap = 0;
+	}
+	struct pound_chain_task task = {.n_floors = pound_row_floors(scene),
+	                                .n_links = n_links,
+	                                .floors = floors,
+	                                .links = links,
+	                                .asked = POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_CLOSING};
+	ask->closing = task_ask(asks, motion, &task);
+}
+
 /* Asks for the run with pounding, unless the responses without it are the answer. */
 void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scene *scene,
                             struct pound_row_ask *ask, const struct pound_motion *motion,
@@ -465,14 +507,9 @@ void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scen
 	ask->march = -1;
 	if (n_links == 0)
 		return;
-	for (int b = 0; b < scene->n_buildings; b++) {
-		const bool linear = pound_law_linear(pound_row_law(scene, b)->type);
-		if (pound_row_storeys(scene, b) == 0)
-			continue;
-		building_lay(asks, scene, b, linear ? NULL : ask->yields + pound_row_first(scene, b),
-		             floors + pound_row_first(scene, b));
-		all_free &= ask->buildings[b].finished;
-	}
+	row_lay(asks, scene, ask, floors);
+	for (int b = 0; b < scene->n_buildings; b++)
+		all_free &= pound_row_storeys(scene, b) == 0 || ask->buildings[b].finished;
 	if (all_free && row_alike(scene, floors)) {
 		work->moving_alike++;
 		return;

@@ -24,6 +24,7 @@ struct pound_row_ask {
 	double impulse_scale; /* as in pound_row_response */
 	unsigned asked;       /* of a chain */
 	int march;            /* with pounding; -1: the responses without pounding are the answer */
+	int closing;          /* of all buildings together without contact; -1: not run */
 };
 
 /* A damping matrix that is laid already, for buildings like this one. */
@@ -67,7 +68,7 @@ struct pound_row_size {
 	int storeys, contacts; /* of a scene */
 };
 
-void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene);
+void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *scene, unsigned outputs_asked);
 void pound_row_size_add_pair(struct pound_row_size *size);
 void pound_row_clear(struct pound_row_asks *asks);
 
@@ -82,6 +83,10 @@ void pound_row_ask_free(struct pound_row_asks *asks, const struct pound_scene *s
 int pound_row_stages(const struct pound_scene *scene);
 int pound_row_stage(struct pound_row_asks *asks, const struct pound_scene *scene, struct pound_row_ask *ask,
                     const struct pound_motion *motion, int stage, struct pound_work *work);
+
+/* Its run of all buildings together without contact, for how far their contacts close. */
+void pound_row_ask_closing(struct pound_row_asks *asks, const struct pound_scene *scene,
+                           struct pound_row_ask *ask, const struct pound_motion *motion);
 
 /* Its run with pounding, unless the responses without it are the answer. */
 void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scene *scene,

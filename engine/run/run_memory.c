@@ -1,5 +1,6 @@
 /* run_memory.c - what a study being computed takes of memory, before anything is allocated. */
 #include "engine/run/floor_outputs.h"
+#include "engine/run/outputs.h"
 #include "engine/run/run.h"
 
 /* Memory of a run, as pound_run_create lays it out, without what it leaves untouched.
@@ -31,7 +32,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	for (int k = 0; k < item.asks && !study->scene.n_buildings && asked & POUND_ASKS_CHAIN; k++)
 		pound_row_size_add_pair(&item.rows);
 	for (int k = 0; k < item.asks && study->scene.n_buildings; k++)
-		pound_row_size_add(&item.rows, &study->scene);
+		pound_row_size_add(&item.rows, &study->scene, pound_outputs_asked(study));
 	run.layout = pound_run_layout(c);
 	if (!study->elsewhere)
 		run.layout.n_blocks = pound_blocks_alike(c, item, &largest);

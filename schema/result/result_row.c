@@ -95,6 +95,8 @@ bool result_row_moves(const struct pound_row_response *row, const struct pound_s
 void result_row_place(struct writer *w, const struct pound_study *study, int output)
 {
 	bool any = false;
+	if (pound_study_contact(study, output) >= 0)
+		writer_whole(w, "contact", pound_study_contact(study, output));
 	for (int o = 0; o < study->n_outputs && !study->elsewhere; o++)
 		any |= pound_study_place(study, o) >= 0;
 	if (!any)

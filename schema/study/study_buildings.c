@@ -418,9 +418,10 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 	const int places = study->scene.n_places ? study->scene.n_places : study_storeys_least(study, 0);
 	int n = 0;
 	for (int o = 0; o < study->n_outputs; o++)
-		n += pound_output_has_places(study->outputs[o], &study->scene) ? places
-		     : pound_output_has_ordinates(study->outputs[o])           ? study->spectrum.n
-		                                                               : 1;
+		n += pound_output_has_contacts(study->outputs[o], &study->scene) ? pound_row_contacts(&study->scene)
+		     : pound_output_has_places(study->outputs[o], &study->scene) ? places
+		     : pound_output_has_ordinates(study->outputs[o])             ? study->spectrum.n
+		                                                                 : 1;
 	if (n > POUND_OUTPUTS_MAX)
 		problems_exceed(problems, "/outputs", n, POUND_OUTPUTS_MAX,
 		                "asks for %d outputs of all places and frequencies, at most %d", n,
@@ -541,15 +542,15 @@ const char *study_row_idle(const struct pound_study *study, const struct field *
 
 /* ---- outputs ---- */
 
-static bool asks_for_places(const struct pound_study *study)
+/* How many outputs there are in place of one. */
+static int copies_of(const struct pound_study *study, int row)
 {
-	bool asks = false;
-	for (int o = 0; o < study->n_outputs; o++)
-		asks |= pound_output_has_places(study->outputs[o], &study->scene);
-	return asks;
+	return pound_output_has_places(row, &study->scene)     ? study->scene.n_places
+	       : pound_output_has_contacts(row, &study->scene) ? pound_row_contacts(&study->scene)
+	                                                       : 1;
 }
 
-/* Puts an output in place of each place's, and all storeys of the left building in place of none.
+/* Puts an output in place of each place's and contact's, and all storeys of the left building in place of none.
  *
  * Test     unit_row_results: places_are_outputs
  */
@@ -563,12 +564,9 @@ void study_places_lay(struct pound_study *study)
 		    (struct pound_storey_place){.building = 0, .storey = i + 1};
 	if (!study->spectrum.place.storey)
 		study->spectrum.place.storey = storeys;
-	if (!asks_for_places(study))
-		return;
 	int outputs[POUND_OUTPUTS_MAX], n = 0;
 	for (int o = 0; o < study->n_outputs; o++)
-		for (int k = 0;
-		     k < (pound_output_has_places(study->outputs[o], &study->scene) ? study->scene.n_places : 1); k++)
+		for (int k = 0; k < copies_of(study, study->outputs[o]); k++)
 			outputs[n++] = study->outputs[o];
 	memcpy(study->outputs, outputs, sizeof *outputs * (size_t)n);
 	study->n_outputs = n;

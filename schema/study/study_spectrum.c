@@ -149,11 +149,17 @@ const char *study_output_name(const struct pound_study *study, int output, char 
 	char digits[WRITER_NUMBER_SIZE];
 	if (study->elsewhere)
 		return study->output_names[output];
-	const int k = pound_study_ordinate(study, output), at = pound_study_place(study, output);
+	const int k = pound_study_ordinate(study, output), at = pound_study_place(study, output),
+	          contact = pound_study_contact(study, output);
 	if (at >= 0) {
 		const struct pound_storey_place *place = &study->scene.places[at];
 		snprintf(name, STUDY_OUTPUT_SIZE, "%s.building_%d.storey_%d",
 		         pound_output_name(study->outputs[output]), place->building, place->storey);
+		return name;
+	}
+	if (contact >= 0) {
+		snprintf(name, STUDY_OUTPUT_SIZE, "%s.contact_%d", pound_output_name(study->outputs[output]),
+		         contact);
 		return name;
 	}
 	if (k < 0)

@@ -161,19 +161,24 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 	reading_close(r);
 }
 
-/* A number of a study of one signal. */
-static double number_of(const char *scene, const char *law, double gap, int seed, const char *output)
+/* A number of a study of one signal; `part`: what follows the output's name. */
+static double number_at(const char *scene, const char *law, double gap, int seed, const char *output,
+                        const char *part)
 {
-	char document[1024], at[64];
+	char document[1024];
 	snprintf(document, sizeof document,
 	         "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"%s\"}, %s, \"contact\": {\"gap_m\": "
 	         "%.17g}, \"excitation\": {\"signals\": 1}}, \"design\": {\"seed\": %d}, \"outputs\": [\"%s\"]}",
 	         law, scene, gap, seed, output);
 	struct reading *r = results_of_study(document);
-	snprintf(at, sizeof at, "/outputs/%s", output);
-	const double value = reading_number(r, "%s", at);
+	const double value = reading_number(r, "/outputs/%s%s", output, part);
 	reading_close(r);
 	return value;
+}
+
+static double number_of(const char *scene, const char *law, double gap, int seed, const char *output)
+{
+	return number_at(scene, law, gap, seed, output, "");
 }
 
 /* Brute force: the bodies touch with a gap smaller by parts in 1e9, and do not with one larger by as much. */
@@ -195,6 +200,50 @@ static void the_gap_needed_decides_which_signals_pound(void **state)
 				           0);
 				check_near(number_of(scenes[k], laws[law], gap * (1 + 1e-9), seed, "pounding_probability"), 0,
 				           0);
+			}
+}
+
+/* The same of rows: some contact closes exactly where one needs more than its gap.  One-story buildings need what oscillators do. */
+static void the_gap_needed_decides_which_signals_pound_in_rows(void **state)
+{
+	static const char *const laws[] = {"linear", "elastoplastic", "origin_oriented"};
+	static const struct {
+		const char *scene;
+		int contacts;
+	} rows[] = {
+	    {"\"buildings\": [{\"storeys\": 1, \"mass_kg\": 3, \"frequency_hz\": 1}, {\"storeys\": 1, "
+	     "\"mass_kg\": 1, "
+	     "\"frequency_hz\": 1.7}]",
+	     1},
+	    {"\"buildings\": [{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 2}, {\"storeys\": 2, "
+	     "\"mass_kg\": 2e5, "
+	     "\"frequency_hz\": 1}, {\"rigid_wall\": true}], \"contacts\": [{\"levels\": [1, 0.8]}, {\"levels\": "
+	     "[3, 2]}, "
+	     "{\"left_building\": 1, \"levels\": [2, 2]}]",
+	     3},
+	};
+	static const char pair[] =
+	    "\"oscillators\": [{\"mass_kg\": 3, \"frequency_hz\": 1}, {\"frequency_hz\": 1.7}]";
+	(void)state;
+	for (int law = 0; law < 3; law++)
+		for (int k = 0; k < 2; k++)
+			for (int seed = 1; seed <= 3; seed++) {
+				double most = 0, one;
+				for (int c = 0; c < rows[k].contacts; c++) {
+					char at[32];
+					snprintf(at, sizeof at, ".contact_%d", c);
+					one = number_at(rows[k].scene, laws[law], 0, seed, "gap_needed_m", at);
+					assert_true(one > 0);
+					most = fmax(most, one);
+				}
+				if (k == 0)
+					check_near(most / number_of(pair, laws[law], 0, seed, "gap_needed_m"), 1, 1e-11);
+				check_near(
+				    number_of(rows[k].scene, laws[law], most * (1 - 1e-9), seed, "pounding_probability"), 1,
+				    0);
+				check_near(
+				    number_of(rows[k].scene, laws[law], most * (1 + 1e-9), seed, "pounding_probability"), 0,
+				    0);
 			}
 }
 
@@ -272,6 +321,7 @@ static void bodies_that_meet_have_closed_their_gap(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(the_gap_needed_decides_which_signals_pound),
+           cmocka_unit_test(the_gap_needed_decides_which_signals_pound_in_rows),
            cmocka_unit_test(the_relative_displacement_is_the_larger_of_both_directions),
            cmocka_unit_test(linear_bodies_have_the_peaks_that_an_observer_finds),
            cmocka_unit_test(bodies_that_meet_have_closed_their_gap),
