@@ -471,7 +471,7 @@ static void row_lay(struct pound_row_asks *asks, const struct pound_scene *scene
 
 /* Asks for the run of all buildings together without contact.
  *
- * Test     unit_row_results: the_gap_needed_decides_which_signals_pound_in_rows
+ * Test     unit_outputs: the_gap_needed_decides_which_signals_pound_in_rows
  */
 void pound_row_ask_closing(struct pound_row_asks *asks, const struct pound_scene *scene,
                            struct pound_row_ask *ask, const struct pound_motion *motion)
