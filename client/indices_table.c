@@ -241,6 +241,7 @@ static void print_output_head(const struct reading *result, const char *output)
 		fputs(" Hz", stdout);
 	print_measure(result, output, "building", "building", ", ");
 	print_measure(result, output, "storey", "story", ", ");
+	print_measure(result, output, "contact", "contact", ", ");
 	print_measure(result, output, "mean", "mean", ": ");
 	print_measure(result, output, "variance", "variance", ", ");
 	print_measure(result, output, "noise_share", "noise share", ", ");

@@ -172,6 +172,8 @@ static void print_output(const struct summary *summary, int output)
 		printf(" at %.4g Hz", frequency);
 	if (isfinite(building))
 		printf(", building %.0f, story %.0f", building, reading_number(result, "%s/storey", at));
+	if (isfinite(reading_number(result, "%s/contact", at)))
+		printf(", contact %.0f", reading_number(result, "%s/contact", at));
 	printf(": mean %.4g", reading_number(result, "%s/mean", at));
 	double noise = reading_number(result, "%s/noise_share", at);
 	if (isfinite(noise))

@@ -138,6 +138,8 @@ const char *plot_output_name(const cJSON *output, char text[PLOT_TEXT])
 	else if (isfinite(plot_number(output, "building")))
 		snprintf(text + n, (size_t)(PLOT_TEXT - n), ", building %.0f, story %.0f",
 		         plot_number(output, "building"), plot_number(output, "storey"));
+	else if (isfinite(plot_number(output, "contact")))
+		snprintf(text + n, (size_t)(PLOT_TEXT - n), ", contact %.0f", plot_number(output, "contact"));
 	return text;
 }
 

@@ -147,6 +147,9 @@ static const cJSON *same_output(const cJSON *cell, const cJSON *row)
 				return output;
 			continue;
 		}
+		const double contact = plot_number(row, "contact");
+		if (isfinite(contact) && contact != plot_number(output, "contact"))
+			continue;
 		double a = plot_number(row, "frequency_hz"), b = plot_number(output, "frequency_hz");
 		if ((strcmp(own, name) == 0 || amplified) && (a == b || (isnan(a) && isnan(b))))
 			return output;
