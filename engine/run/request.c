@@ -543,7 +543,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	}
 	pound_pairs_finish(&request->pairs);
 	status = status ? status : marches_run(request, &solver, request->march_keys.n, &done, stop);
-	status = status ? status : pound_row_run(&request->rows, stop);
+	status = status ? status : pound_row_run(&request->rows, &solver, request->rows.n, stop);
 	if (status)
 		return status;
 	pounding_ask(request, n_items, n_asks, &work->checks, &of_checks);
