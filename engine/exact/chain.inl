@@ -31,7 +31,7 @@ enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
 /* Whether a link's overlap can be had from its floors again: it is far beyond the rounding of their displacements. */
 static bool link_far(const struct chain *c, const struct link *l)
 {
-	double terms = l->gap;
+	double terms = l->link->gap;
 	for (int k = 0; k < l->n_ends; k++)
 		terms += fabs(l->weight[k] * c->u.at[l->floor[k]]);
 	return !l->touching && !l->released && l->p < -0x1p-20 * terms && l->p + c->task->time_step * l->q < 0;

@@ -44,21 +44,20 @@ LANE_INLINE vd ends_load(const struct link_ends *x, int k, int j, const double *
 }
 
 /* Adds a contact's force, or what else acts on a floor from outside, of order n. */
-static void push_add(struct chain *c, const struct link *l, double force)
+LANE_INLINE void push_add(struct chain *c, const struct link *l, double force)
 {
-	for (int k = 0; k < l->n_ends; k++) {
-		const int i = l->floor[k];
-		c->push.at[i] = fma(l->weight[k] * c->inverse_mass.at[i], force, c->push.at[i]);
-	}
+	double *push = c->push.at;
+	push[l->floor[0]] = fma(l->share[0], force, push[l->floor[0]]);
+	push[l->floor[1]] = fma(l->share[1], force, push[l->floor[1]]);
+	for (int k = 2; k < l->n_ends; k++)
+		c->push.at[l->floor[k]] = fma(l->share[k], force, c->push.at[l->floor[k]]);
 }
 
 /* Force of a contact, of order n, times the square of the step. */
 LANE_INLINE double link_force(const struct chain *c, const struct link *l, int j, int n)
 {
-	const double h = c->dt;
-	const double spring = l->at.on.stiffness * (h * h) * c->overlaps[n][j];
-	const double force = fma(l->at.on.damping * h * (n + 1), c->overlaps[n + 1][j], spring);
-	return n == 0 ? force + l->at.on.offset * (h * h) : force;
+	const double force = fma(l->dash * (n + 1), c->overlaps[n + 1][j], l->spring * c->overlaps[n][j]);
+	return n == 0 ? force + l->force : force;
 }
 
 static void held_push(struct chain *c, int n, double ground); /* impact.inl */
@@ -81,7 +80,7 @@ LANE_SHARED void modal_add(struct chain *c, int n)
 /* Whether the sides of a link that is followed meet without overlap, at one velocity but for a rounding. */
 LANE_INLINE bool link_level(const struct chain *c, const struct link *l)
 {
-	if (!l->own || l->p != 0)
+	if (l->p != 0)
 		return false;
 	double alike = 0;
 	for (int k = 0; k < l->n_ends; k++)
@@ -121,36 +120,55 @@ static void pushes_set(struct chain *c, int n)
 }
 
 /* Force of a vector of stories, of order n. */
-LANE_INLINE vd story_force(const struct chain *c, int i, int n)
+LANE_INLINE vd story_force(const struct chain *c, int i, int n, bool first)
 {
 	const vd elastic = column_load(&c->spring, i) * column_load(&c->drifts[n], i);
 	const vd s = vfma(column_load(&c->dash, i) * vsplat(n + 1), column_load(&c->drifts[n + 1], i), elastic);
-	return n == 0 ? s + column_load(&c->force, i) : s;
+	return first ? s + column_load(&c->force, i) : s;
+}
+
+/* what an order of series takes: constants where it is called */
+struct order_kind {
+	bool first;  /* order 0: springs have offsets */
+	bool driven; /* orders 0 and 1: the ground moves */
+	bool pushed; /* floors are acted on from outside */
+	bool moving; /* displacements are looked at */
+};
+
+/* Order n + 2 of a vector of displacements, from accelerations of order n. */
+LANE_INLINE void displacements_next(struct chain *c, int n, int i, vd a, double ground)
+{
+	const vd damping = column_load(&c->mass_damping_step, i) * vsplat(n + 1);
+	const vd resisted = vfma(damping, column_load(&c->displacements[n + 1], i), vsplat(ground));
+	column_store(&c->displacements[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
+}
+
+/* Order n + 2 of a vector of drifts, from accelerations of order n of its floors and of the vector below. */
+LANE_INLINE void drifts_next(struct chain *c, int n, int i, vd below, vd a, double ground, bool driven)
+{
+	const vd from = driven ? column_load(&c->base, i) * vsplat(ground) : vsplat(0);
+	const vd under = vfma(vbelow(below, a), column_load(&c->inner, i), from);
+	const vd damping = column_load(&c->mass_damping_step, i) * vsplat(n + 1);
+	const vd resisted = vfma(damping, column_load(&c->drifts[n + 1], i), under);
+	column_store(&c->drifts[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
 }
 
 /* Makes order n + 2 of all floors out of those before.
  *
  * Given    ground  of order n, times the square of the step
  */
-LANE_INLINE void floors_next(struct chain *c, int n, double ground, bool pushed, bool moving)
+LANE_INLINE void floors_next(struct chain *c, int n, double ground, const struct order_kind kind)
 {
-	const vd zero = vsplat(0), share = vsplat(TERM_OF[n].share);
-	vd s = story_force(c, 0, n), below = zero;
+	vd s = story_force(c, 0, n, kind.first), below = vsplat(0);
 	for (int i = 0; i < c->wide; i += W) {
-		const vd next = i + W < c->wide ? story_force(c, i + W, n) : zero;
+		const vd next = i + W < c->wide ? story_force(c, i + W, n, kind.first) : vsplat(0);
 		vd a =
 		    vfma(vabove(s, next), column_load(&c->inverse_above, i), -(s * column_load(&c->inverse_mass, i)));
-		if (pushed)
+		if (kind.pushed)
 			a = a - column_load(&c->push, i);
-		const vd under =
-		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
-		const vd damping = column_load(&c->mass_damping_step, i) * vsplat(n + 1);
-		column_store(&c->drifts[n + 2], i,
-		             (a - vfma(damping, column_load(&c->drifts[n + 1], i), under)) * share);
-		if (moving)
-			column_store(&c->displacements[n + 2], i,
-			             (a - vfma(damping, column_load(&c->displacements[n + 1], i), vsplat(ground))) *
-			                 share);
+		drifts_next(c, n, i, below, a, ground, kind.driven);
+		if (kind.moving)
+			displacements_next(c, n, i, a, ground);
 		below = a;
 		s = next;
 	}
@@ -206,7 +224,7 @@ static void story_settle(struct chain *c, int i, double ground)
 static void series_start(struct chain *c)
 {
 	const vd h = vsplat(c->dt), h2 = h * h;
-	links_list(c);
+	c->level = false;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
 		column_store(&c->dash, i, column_load(&c->dashpot, i) * h);
@@ -222,13 +240,24 @@ static void series_start(struct chain *c)
 		struct link *l = &c->link[j];
 		c->overlaps[0][j] = l->p;
 		c->overlaps[1][j] = l->q * c->dt;
+		l->spring = l->at.on.stiffness * (c->dt * c->dt);
+		l->dash = l->at.on.damping * c->dt;
+		l->force = l->at.on.offset * (c->dt * c->dt);
 		l->level = link_level(c, l);
+		c->level |= l->level;
 	}
 }
 
 /* Orders of overlaps that are integrated in their own right. */
-static void overlaps_next(struct chain *c, int n, double ground)
+LANE_INLINE void overlaps_next(struct chain *c, int n, double ground)
 {
+	if (!c->held && !c->level) {
+		for (int k = 0; k < c->own.n; k++) {
+			const int j = c->own.link[k];
+			c->overlaps[n + 2][j] = link_sum(&c->link[j], c->displacements[n + 2].at);
+		}
+		return;
+	}
 	for (int k = 0; k < c->own.n; k++) {
 		const int j = c->own.link[k];
 		struct link *l = &c->link[j];
@@ -242,25 +271,36 @@ static void overlaps_next(struct chain *c, int n, double ground)
 	}
 }
 
-LANE_INLINE void series_orders(struct chain *c, bool pushed)
+/* Stories without rate where their branch ends. */
+static void stories_settle(struct chain *c, double ground)
 {
-	const double h2 = c->dt * c->dt, ground[2] = {c->ground * h2, c->slope * c->dt * h2};
-	for (int n = 0; n + 2 <= c->order; n++) {
-		const double g = n < 2 ? ground[n] : 0;
-		if (pushed) {
-			pushes_set(c, n);
-			if (c->held)
-				held_push(c, n, g);
-		}
-		floors_next(c, n, g, pushed, c->moving);
-		if (n == 0 && c->edged)
-			for (int i = 0; i < c->n; i += W)
-				for (unsigned still = vbits(vequal(column_load(&c->v, i), vsplat(0))); still;
-				     still &= still - 1)
-					story_settle(c, i + __builtin_ctz(still), g);
-		if (c->own.n > 0)
-			overlaps_next(c, n, g);
+	for (int i = 0; i < c->n; i += W)
+		for (unsigned still = vbits(vequal(column_load(&c->v, i), vsplat(0))); still; still &= still - 1)
+			story_settle(c, i + __builtin_ctz(still), ground);
+}
+
+/* One order of all that moves. */
+LANE_INLINE void series_order(struct chain *c, int n, double ground, const struct order_kind kind)
+{
+	if (kind.pushed) {
+		pushes_set(c, n);
+		if (c->held)
+			held_push(c, n, ground);
 	}
+	floors_next(c, n, ground, kind);
+	if (kind.first && c->edged)
+		stories_settle(c, ground);
+	if (kind.moving && c->own.n > 0)
+		overlaps_next(c, n, ground);
+}
+
+LANE_INLINE void series_orders(struct chain *c, const bool pushed, const bool moving)
+{
+	const double h2 = c->dt * c->dt;
+	series_order(c, 0, c->ground * h2, (struct order_kind){true, true, pushed, moving});
+	series_order(c, 1, c->slope * c->dt * h2, (struct order_kind){false, true, pushed, moving});
+	for (int n = 2; n + 2 <= c->order; n++)
+		series_order(c, n, 0, (struct order_kind){false, false, pushed, moving});
 }
 
 /* What some vectors of series do over a step.
@@ -326,9 +366,11 @@ static void series_chain(struct chain *c)
 {
 	series_start(c);
 	if (c->modal || c->touching.n > 0)
-		series_orders(c, true);
+		series_orders(c, true, c->moving);
+	else if (c->moving)
+		series_orders(c, false, true);
 	else
-		series_orders(c, false);
+		series_orders(c, false, false);
 	enclosures_make(c, c->drifts, &c->drift);
 	if (c->moving)
 		enclosures_make(c, c->displacements, &c->displacement);

@@ -46,16 +46,17 @@ struct enclosures {
 /* one contact, or what may become one */
 struct link {
 	const struct pound_link *link;
-	double gap; /* [m] */
 	int n_ends; /* floors that move */
-	int floor[ENDS];
+	uint16_t floor[ENDS];
 	double weight
 	    [ENDS]; /* > 0: the level moves with the floor, and the force goes against it; right side: < 0 */
-	double inverse_mass;   /* 1 over the effective mass [1/kg] */
-	struct pound_touch at; /* branch of its force */
-	bool touching;         /* the force acts */
-	bool released;         /* the force is gone before the overlap */
-	bool fresh;            /* the force has just passed zero */
+	double share[ENDS];         /* weight over the mass of the floor [1/kg] */
+	double spring, dash, force; /* stiffness, damping and offset of its branch, scaled to the step */
+	double inverse_mass;        /* 1 over the effective mass [1/kg] */
+	struct pound_touch at;      /* branch of its force */
+	bool touching;              /* the force acts */
+	bool released;              /* the force is gone before the overlap */
+	bool fresh;                 /* the force has just passed zero */
 	bool own;       /* p and q are integrated in their own right; else they are differences of the floors' */
 	bool held;      /* touching: rigid, and the sides stay together */
 	bool level;     /* without overlap, at one velocity but for a rounding; nothing has decided yet */
@@ -74,8 +75,8 @@ struct modal_place {
 };
 
 enum {
-	NOTES = 48,      /* samples that may hold largest values, at most */
-	KEPT = 6 * 3264, /* numbers that are kept of these */
+	NOTES = 48,                        /* samples that may hold largest values, at most */
+	KEPT = 6 * 8 * POUND_CHAIN_FLOORS, /* numbers that are kept of these */
 };
 
 /* what is kept of a sample: drifts and their rates at its start, elastic centers, bounds inside it */
@@ -164,6 +165,7 @@ struct chain {
 	uint16_t first[POUND_CHAIN_FLOORS + 1]; /* floor of each building, and what follows the last */
 	bool edged;                             /* a law has more than one branch */
 	bool held;                              /* a rigid contact holds in the current step */
+	bool level;                             /* a link is, in the current step */
 	bool modal;                             /* a building has a damping matrix */
 	bool moving;                            /* displacements are looked at */
 	bool curved;                            /* a contact's force may be no straight line */
@@ -222,12 +224,12 @@ static void link_start(struct link *l, const struct pound_chain_task *task, int 
 			if (floor == POUND_CHAIN_GROUND || weight == 0)
 				continue;
 			assert(floor >= 0 && floor < task->n_floors && weight > 0);
-			l->floor[l->n_ends] = floor;
+			l->floor[l->n_ends] = (uint16_t)floor;
+			l->share[l->n_ends] = (side ? -weight : weight) * (1 / task->floors[floor].mass);
 			l->weight[l->n_ends++] = side ? -weight : weight;
 			l->inverse_mass += weight * weight / task->floors[floor].mass;
 		}
 	l->own = true;
-	l->gap = link->gap;
 	l->p = -link->gap;
 }
 
@@ -244,7 +246,7 @@ static void link_ends_start(struct chain *c)
 				x->follows[k][row] = true;
 		}
 		x->n[row] = n_ends > x->n[row] ? n_ends : x->n[row];
-		x->gap[j] = j < c->n_links ? l->gap : DBL_MAX;
+		x->gap[j] = j < c->n_links ? l->link->gap : DBL_MAX;
 		for (int k = 0; k < ENDS; k++) {
 			const int next = j == first ? 0 : x->floor[k][first] + j - first;
 			const int floor = k < n_ends ? l->floor[k] : next < c->wide ? next : 0;
@@ -256,10 +258,11 @@ static void link_ends_start(struct chain *c)
 }
 
 /* Sum over the floors of a link of its weights and what is in a column. */
-static double link_sum(const struct link *l, const double *column)
+LANE_INLINE double link_sum(const struct link *l, const double *column)
 {
-	double sum = 0;
-	for (int k = 0; k < l->n_ends; k++)
+	double sum = fma(l->weight[0], column[l->floor[0]], 0.0);
+	sum = fma(l->weight[1], column[l->floor[1]], sum);
+	for (int k = 2; k < l->n_ends; k++)
 		sum = fma(l->weight[k], column[l->floor[k]], sum);
 	return sum;
 }

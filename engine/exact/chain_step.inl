@@ -11,19 +11,19 @@ static double reach_touching(struct chain *c)
 	double spring = 0, dash = 0, load[2][LONG];
 	for (int s = 0; s < 2; s++)
 		memset(load[s], 0, sizeof(double) * (size_t)c->wide);
-	for (int j = 0; j < c->n_links; j++) {
-		const struct link *l = &c->link[j];
-		for (int k = 0; l->touching && k < l->n_ends; k++) {
+	for (int o = 0; o < c->touching.n; o++) {
+		const struct link *l = &c->link[c->touching.link[o]];
+		for (int k = 0; k < l->n_ends; k++) {
 			const int i = l->floor[k];
 			const double share = fabs(l->weight[k]) * c->inverse_mass.at[i];
 			load[0][i] = fma(share, l->at.on.stiffness, load[0][i]);
 			load[1][i] = fma(share, l->at.on.damping, load[1][i]);
 		}
 	}
-	for (int j = 0; j < c->n_links; j++) {
-		const struct link *l = &c->link[j];
+	for (int o = 0; o < c->touching.n; o++) {
+		const struct link *l = &c->link[c->touching.link[o]];
 		double sum[2] = {0, 0};
-		for (int k = 0; l->touching && k < l->n_ends; k++)
+		for (int k = 0; k < l->n_ends; k++)
 			for (int s = 0; s < 2; s++)
 				sum[s] = fma(fabs(l->weight[k]), load[s][l->floor[k]], sum[s]);
 		spring = larger(spring, sum[0]);
@@ -51,11 +51,8 @@ static void step_choose(struct chain *c)
 	const double reach = c->reach * c->pace;
 	c->dt = c->remainder <= reach ? c->remainder : c->remainder > 2 * reach ? reach : 0.5 * c->remainder;
 	bool level = false;
-	for (int j = 0; j < c->n_links; j++) {
-		struct link *l = &c->link[j];
-		l->level = link_level(c, l);
-		level |= l->level;
-	}
+	for (int k = 0; k < c->own.n; k++)
+		level |= link_level(c, &c->link[c->own.link[k]]);
 	// derivatives by the share of a step that is a power of two have the same roundings with and without contact
 	if (level)
 		c->dt = ldexp(1, ilogb(c->dt));
@@ -312,6 +309,7 @@ static void chain_step(struct chain *c)
 	if (c->moving)
 		chain_displacements(c);
 	c->warp.on = chain_curved(c);
+	links_list(c);
 	if (c->warp.on) {
 		nonlinear_series(c);
 	} else {
@@ -332,7 +330,7 @@ static void chain_step(struct chain *c)
 			step_arrive(c, first.time);
 		step_tops(c, first.time);
 	}
-	if (first.event != EVENT_NONE && c->moving)
+	if (first.event != EVENT_NONE && first.event < EVENT_STORY && c->moving)
 		chain_displacements(c);
 	overlap_enter(c, &first);
 	event_apply(c, &first);

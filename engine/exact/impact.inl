@@ -211,6 +211,7 @@ static double link_acceleration(struct chain *c, const struct link *l)
 	double sum = 0;
 	c->dt = 1;
 	chain_displacements(c);
+	links_list(c);
 	series_start(c);
 	pushes_set(c, 0);
 	held_push(c, 0, c->ground);
