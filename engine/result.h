@@ -94,8 +94,8 @@ struct pound_contact_response {
 #define X(member, name) double member;
 	POUND_CONTACT_MEASURES(X)
 #undef X
-	double speed_max; /* largest speed at which a contact begins [m/s] */
-	double lost;      /* in contacts [J]; NAN as above */
+	double speed_max;  /* largest speed at which a contact begins [m/s] */
+	double lost;       /* in contacts [J]; NAN as above */
 	double gap_needed; /* largest closing displacement without contact, NAN: not asked [m] */
 };
 

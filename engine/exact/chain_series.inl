@@ -143,11 +143,10 @@ LANE_INLINE void displacements_next(struct chain *c, int n, int i, vd a, double 
 	column_store(&c->displacements[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
 }
 
-/* Order n + 2 of a vector of drifts, from accelerations of order n of its floors and of the vector below. */
-LANE_INLINE void drifts_next(struct chain *c, int n, int i, vd below, vd a, double ground, bool driven)
+/* Order n + 2 of a vector of drifts, from accelerations of order n of its floors, of the vector below and of the ground. */
+LANE_INLINE void drifts_next(struct chain *c, int n, int i, vd below, vd a, vd base)
 {
-	const vd from = driven ? column_load(&c->base, i) * vsplat(ground) : vsplat(0);
-	const vd under = vfma(vbelow(below, a), column_load(&c->inner, i), from);
+	const vd under = vfma(vbelow(below, a), column_load(&c->inner, i), base);
 	const vd damping = column_load(&c->mass_damping_step, i) * vsplat(n + 1);
 	const vd resisted = vfma(damping, column_load(&c->drifts[n + 1], i), under);
 	column_store(&c->drifts[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
@@ -166,7 +165,7 @@ LANE_INLINE void floors_next(struct chain *c, int n, double ground, const struct
 		    vfma(vabove(s, next), column_load(&c->inverse_above, i), -(s * column_load(&c->inverse_mass, i)));
 		if (kind.pushed)
 			a = a - column_load(&c->push, i);
-		drifts_next(c, n, i, below, a, ground, kind.driven);
+		drifts_next(c, n, i, below, a, kind.driven ? column_load(&c->base, i) * vsplat(ground) : vsplat(0));
 		if (kind.moving)
 			displacements_next(c, n, i, a, ground);
 		below = a;

@@ -332,8 +332,7 @@ OF_FLOOR(lost_left, lost, 0)
 OF_FLOOR(lost_right, lost, 1)
 #undef OF_FLOOR
 
-static double floor_residual(const struct pound_row_response *row, const struct pound_scene *scene,
-                             int at)
+static double floor_residual(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	const struct pound_storey_place *place = &scene->places[at];
 	const struct pound_storey_response *first = &row->storeys[pound_row_first(scene, place->building)];
@@ -343,14 +342,12 @@ static double floor_residual(const struct pound_row_response *row, const struct 
 	return fabs(sum);
 }
 
-static double storey_lost(const struct pound_row_response *row, const struct pound_scene *scene,
-                          int at)
+static double storey_lost(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	return storey_of(row, scene, at)->lost;
 }
 
-static double row_lost_contact(const struct pound_row_response *row, const struct pound_scene *scene,
-                               int at)
+static double row_lost_contact(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	(void)at;
 	double sum = 0;
@@ -359,15 +356,13 @@ static double row_lost_contact(const struct pound_row_response *row, const struc
 	return sum;
 }
 
-static double row_work_in(const struct pound_row_response *row, const struct pound_scene *scene,
-                          int at)
+static double row_work_in(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	(void)scene, (void)at;
 	return row->work_in;
 }
 
-static double row_approach(const struct pound_row_response *row, const struct pound_scene *scene,
-                           int at)
+static double row_approach(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	(void)at;
 	double most = 0;

@@ -256,8 +256,7 @@ static double free_max(const struct pound_request *request, const struct body_as
 	return body->finished ? request->results[body->march].displacement_max[0] : 0;
 }
 
-/* Both bodies of an ask, whose yield displacements are known, and their contact; the ground motion is not set. */
-static struct pound_task pair_task(const struct pound_request *request, const struct ask *ask)
+struct pound_task pound_request_pair_task(const struct pound_request *request, const struct ask *ask)
 {
 	struct pound_task task = {0};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -288,7 +287,7 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 		work->moving_alike++;
 		return;
 	}
-	struct pound_task task = pair_task(request, ask);
+	struct pound_task task = pound_request_pair_task(request, ask);
 	task.accounted = ask->balanced;
 	if (task.gap > 0 && free_max(request, &ask->bodies[0]) + free_max(request, &ask->bodies[1]) < task.gap) {
 		work->never_touching++;
@@ -305,7 +304,7 @@ static bool follow_free_pair(struct pound_request *request, int a)
 {
 	struct ask *ask = &request->asks[a];
 	const struct pound_motion *m = &request->motions[ask->motion];
-	const struct pound_task pair = pair_task(request, ask);
+	const struct pound_task pair = pound_request_pair_task(request, ask);
 	struct pound_task task = {.bodies = {pair.bodies[0], pair.bodies[1]},
 	                          .ground = m->ground,
 	                          .n_samples = m->n_samples,
@@ -329,7 +328,7 @@ static void follow_chain(struct pound_request *request, struct ask *ask)
 	const unsigned asked = (asks & POUND_ASKS_ACCELERATIONS ? POUND_CHAIN_ACCELERATIONS : 0) |
 	                       (asks & POUND_ASKS_FORCES ? POUND_CHAIN_FORCES : 0) |
 	                       (asks & POUND_ASKS_ENERGIES ? POUND_CHAIN_ENERGY : 0);
-	struct pound_task pair = pair_task(request, ask);
+	struct pound_task pair = pound_request_pair_task(request, ask);
 	pair.contact = ask->march >= 0;
 	ask->chain = pound_row_ask_pair(&request->rows, &pair, m, asked);
 	ask->chain_free = ask->chain;
@@ -369,8 +368,7 @@ static struct pound_runs_known ask_known(const struct pound_request *request, co
 
 /* ---- rows of buildings ---- */
 
-/* The scene of an ask with its own buildings, until the next one is asked for. */
-static struct pound_scene row_scene(const struct pound_request *request, const struct ask *ask)
+struct pound_scene pound_request_row_scene(const struct pound_request *request, const struct ask *ask)
 {
 	return pound_cells_scene(request->campaign, ask->cell, ask->row, ask->sample, request->rows.memory);
 }
@@ -378,7 +376,7 @@ static struct pound_scene row_scene(const struct pound_request *request, const s
 static void row_free(struct pound_request *request, int a)
 {
 	const struct pound_study *study = request->campaign->study;
-	const struct pound_scene scene = row_scene(request, &request->asks[a]);
+	const struct pound_scene scene = pound_request_row_scene(request, &request->asks[a]);
 	pound_row_ask_free(&request->rows, &scene, &request->row_asks[a],
 	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0 ||
 	                       pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR,
@@ -398,7 +396,7 @@ static struct pound_outcome ask_outcome(const struct pound_request *request, int
 	const struct ask *ask = &request->asks[a];
 	struct pound_outcome outcome = {.scene = scene, .pair = pair, .row = row};
 	if (ask->scene.n_buildings) {
-		*scene = row_scene(request, ask);
+		*scene = pound_request_row_scene(request, ask);
 		outcome.status = pound_row_response_of(&request->rows, scene, &request->row_asks[a],
 		                                       request->motions[ask->motion].exponent, row);
 	} else {
@@ -444,7 +442,7 @@ static bool stage_ask(struct pound_request *request, int first, int end, int sta
 	for (int a = first; a < end; a++) {
 		struct ask *ask = &request->asks[a];
 		if (ask->scene.n_buildings) {
-			const struct pound_scene scene = row_scene(request, ask);
+			const struct pound_scene scene = pound_request_row_scene(request, ask);
 			asked += pound_row_stage(&request->rows, &scene, &request->row_asks[a],
 			                         &request->motions[ask->motion], stage, work);
 			continue;
@@ -466,7 +464,7 @@ static void pounding_ask(struct pound_request *request, int first, int end, stru
 	for (int a = first; a < end; a++) {
 		struct ask *ask = &request->asks[a];
 		if (ask->scene.n_buildings) {
-			const struct pound_scene scene = row_scene(request, ask);
+			const struct pound_scene scene = pound_request_row_scene(request, ask);
 			pound_row_ask_pounding(&request->rows, &scene, &request->row_asks[a],
 			                       &request->motions[ask->motion], work);
 		} else
@@ -510,10 +508,10 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 
 	struct pound_work of_checks = {0}; // what they leave out is not reported
 	int done = 0, stages = 1;
-	for (int a = 0; a < n_asks; a++)
-		stages =
-		    (int)fmax(stages, request->asks[a].scene.n_buildings ? pound_row_stages(&request->asks[a].scene)
-		                                                         : stages_of(&request->asks[a]));
+	for (int a = 0; a < n_asks; a++) {
+		const struct ask *ask = &request->asks[a];
+		stages = (int)fmax(stages, ask->scene.n_buildings ? pound_row_stages(&ask->scene) : stages_of(ask));
+	}
 	enum pound_status status = POUND_OK;
 	bool more = true;
 	for (int stage = 0; stage < stages && more && !status; stage++) {
@@ -530,15 +528,15 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	for (int a = n_asks - 1; a >= 0 && !status && asked & POUND_ASKS_FREE_PAIR; a--) { // the checks first
 		if (pound_stopped(stop))
 			return POUND_STOPPED;
+		const struct ask *ask = &request->asks[a];
+		const struct pound_scene scene = pound_request_row_scene(request, ask);
 		const int known = marches_known(request);
-		bool followed = false;
-		if (request->asks[a].scene.n_buildings) {
-			const struct pound_scene scene = row_scene(request, &request->asks[a]);
+		if (scene.n_buildings)
 			pound_row_ask_closing(&request->rows, &scene, &request->row_asks[a],
-			                      &request->motions[request->asks[a].motion]);
-		} else
-			followed = follow_free_pair(request, a);
-		work->free_pair_runs.run += followed + marches_known(request) - known;
+			                      &request->motions[ask->motion]);
+		else
+			work->free_pair_runs.run += follow_free_pair(request, a);
+		work->free_pair_runs.run += marches_known(request) - known;
 		work->free_pair_runs.asked++;
 	}
 	pound_pairs_finish(&request->pairs);
@@ -580,126 +578,4 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		take(into, &outcome);
 	}
 	return POUND_OK;
-}
-
-/* The same of the top of the left building of a row, in place of the result of its march. */
-static enum pound_status row_displacement(struct pound_request *request, const struct pound_solver *solver,
-                                          int item, int sample, const atomic_bool *stop, double *u)
-{
-	const struct pound_scene scene = row_scene(request, &request->asks[item]);
-	const struct pound_storey_place top = {.building = 0, .storey = pound_row_storeys(&scene, 0)};
-	const struct pound_row_floor floor =
-	    pound_row_floor(&request->rows, &scene, &request->row_asks[item], &top);
-	const struct pound_floor_of_chain *of = floor.pounding.task ? &floor.pounding : &floor.free;
-	struct pound_chain_task task = *of->task;
-	struct pound_chain_result result = *of->result;
-	assert(sample >= 1 && sample < task.n_samples);
-	task.n_samples = sample + 1;
-	const enum pound_status status = pound_solver_rows(solver, &task, &result, 1, request->scratch, stop);
-	if (status)
-		return status;
-	*u = result.status ? NAN : result.floors[of->floor * POUND_FLOOR_MEASURES + POUND_FLOOR_END_U];
-	*u = ldexp(*u, request->motions[request->asks[item].motion].exponent);
-	return POUND_OK;
-}
-
-enum pound_status pound_request_displacement(struct pound_request *request, const struct pound_solver *solver,
-                                             int item, int sample, const atomic_bool *stop, double *u)
-{
-	const struct ask *ask = &request->asks[item];
-	if (ask->scene.n_buildings)
-		return row_displacement(request, solver, item, sample, stop, u);
-	struct pound_task task = request->tasks[ask->march < 0 ? ask->bodies[0].march : ask->march];
-	struct pound_task_result result;
-	assert(sample >= 1 && sample < task.n_samples);
-	task.n_samples = sample + 1;
-	enum pound_status status = pound_solver_run(solver, &task, &result, 1, request->scratch, stop);
-	if (status)
-		return status;
-	*u = result.status ? NAN : ldexp(result.u[0], request->motions[ask->motion].exponent);
-	return POUND_OK;
-}
-
-enum pound_status pound_request_repeat(struct pound_request *request, const struct pound_solver *solver,
-                                       const atomic_bool *stop, int *n)
-{
-	const struct pound_row_asks *rows = &request->rows;
-	if (rows->n > 0) {
-		const int first = request->n_rows_before < rows->n ? request->n_rows_before : 0;
-		*n = rows->n - first;
-		return pound_row_repeat(&request->rows, solver, first, stop);
-	}
-	int from = request->n_before < request->march_keys.n ? request->n_before : 0;
-	*n = request->march_keys.n - from;
-	return pound_solver_run(solver, &request->tasks[from], &request->results[from], *n, request->scratch,
-	                        stop);
-}
-
-int pound_request_count(const struct pound_request *request, int *n_items)
-{
-	*n_items = request->n_items;
-	return request->n_asks;
-}
-
-struct pound_request_floor pound_request_floor(const struct pound_request *request, int ask)
-{
-	const struct ask *a = &request->asks[ask];
-	struct pound_request_floor floor = {.contact = a->scene.contact.present,
-	                                    .exponent = request->motions[a->motion].exponent,
-	                                    .scratch = request->scratch};
-	if (a->scene.n_buildings) {
-		const struct pound_scene scene = row_scene(request, a);
-		floor.row = pound_row_floor(&request->rows, &scene, &request->row_asks[ask],
-		                            &request->campaign->study->spectrum.place);
-		floor.touches = floor.row.pounding.task;
-		const struct pound_floor_of_chain *of = floor.touches ? &floor.row.pounding : &floor.row.free;
-		floor.mass = of->task->floors[of->floor].mass;
-		floor.frequency_hz = floor.row.frequency_hz;
-		floor.march = (int)(of->task - request->rows.tasks);
-		return floor;
-	}
-	floor.mass = a->scene.oscillators[0].mass;
-	floor.frequency_hz = a->scene.oscillators[0].frequency_hz;
-	floor.touches = a->march >= 0;
-	floor.pounding = a->march < 0 ? NULL : &request->tasks[a->march];
-	floor.free = &request->tasks[a->bodies[0].march];
-	floor.march = a->march < 0 ? a->bodies[0].march : a->march;
-	return floor;
-}
-
-/* The two bodies of an ask together; without contact where the answer is the responses without it. */
-struct pound_task pound_request_pair(const struct pound_request *request, int ask)
-{
-	const struct ask *a = &request->asks[ask];
-	const struct pound_motion *m = &request->motions[a->motion];
-	struct pound_task task = a->march < 0 ? pair_task(request, a) : request->tasks[a->march];
-	task.contact = a->march >= 0;
-	task.ground = m->ground;
-	task.n_samples = m->n_samples;
-	task.time_step = m->time_step;
-	return task;
-}
-
-void pound_request_chain(const struct pound_request *request, int ask, struct pound_request_chain *chain)
-{
-	const struct ask *a = &request->asks[ask];
-	const struct pound_row_ask *row = &request->row_asks[ask];
-	*chain = (struct pound_request_chain){.scene = a->scene,
-	                                      .mass = 1,
-	                                      .exponent = request->motions[a->motion].exponent,
-	                                      .scratch = request->scratch};
-	if (a->scene.n_buildings) {
-		chain->scene = row_scene(request, a);
-		if (row->march < 0)
-			return;
-		chain->task = request->rows.tasks[row->march];
-		chain->result = request->rows.results[row->march];
-	} else if (a->march >= 0) {
-		const struct pound_task task = pound_request_pair(request, ask);
-		pound_pair_chain(&task, &chain->pair);
-		chain->task = chain->pair.task;
-		chain->result = (struct pound_chain_result){.floors = chain->pair.floor_measures[0],
-		                                            .links = chain->pair.link_measures};
-		chain->mass = a->scene.oscillators[0].mass;
-	}
 }

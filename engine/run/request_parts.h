@@ -1,4 +1,4 @@
-/* request_parts.h - the inside of a request.  For request.c and request_size.c. */
+/* request_parts.h - the inside of a request.  For request.c, request_answers.c and request_size.c. */
 #ifndef REQUEST_PARTS_H
 #define REQUEST_PARTS_H
 
@@ -50,5 +50,11 @@ struct pound_request {
 	int n_before, n_rows_before; /* marches without pounding, they are the first */
 	int n_asks, n_items;         /* of the last run; n_items without those of checks */
 };
+
+/* The scene of an ask with its own buildings, until the next one is asked for. */
+struct pound_scene pound_request_row_scene(const struct pound_request *request, const struct ask *ask);
+
+/* Both bodies of an ask, whose yield displacements are known, and their contact; the ground motion is not set. */
+struct pound_task pound_request_pair_task(const struct pound_request *request, const struct ask *ask);
 
 #endif

@@ -445,13 +445,13 @@ static void what_work_space_held_before_is_not_read(void **state)
 	for (int t = 0; t < SAMPLES; t++)
 		ground[t] = -4 * sin(0.15 * t);
 	for (int n = 1; n <= FLOORS; n++) {
-		const struct pound_chain_task task = {
-		    .ground = ground,
-		    .n_samples = SAMPLES,
-		    .time_step = 0.01,
-		    .n_floors = n,
-		    .floors = floors,
-		    .asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS};
+		const struct pound_chain_task task = {.ground = ground,
+		                                      .n_samples = SAMPLES,
+		                                      .time_step = 0.01,
+		                                      .n_floors = n,
+		                                      .floors = floors,
+		                                      .asked = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENTS |
+		                                               POUND_CHAIN_ACCELERATIONS};
 		for (int f = 0; f < FILLS; f++) {
 			unsigned char *scratch = aligned_alloc(64, POUND_CHAIN_SCRATCH);
 			assert_non_null(scratch);
