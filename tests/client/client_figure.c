@@ -220,31 +220,46 @@ static void a_report_is_one_page_that_needs_nothing_else(void **state)
 	unlink(study);
 }
 
+/* A figure beside a page is what the commands of the page make of an example. */
+static void figure_of_a_page(const char *page, const char *commands, const char *example, const char *figure,
+                             const char *path)
+{
+	char *text = program_file(page, NULL), *golden = program_file(path, NULL), result[32];
+	assert_non_null(text);
+	assert_non_null(golden);
+	assert_non_null(strstr(text, commands));
+	struct program_outcome study = POUND("example", example);
+	struct program_outcome run = program_run((const char *const[]){"pound", "run", "-", NULL}, study.out);
+	keep(&run, result);
+	struct program_outcome made = POUND("plot", figure, result);
+	program_expect(&made, 0);
+	assert_string_equal(made.out, golden);
+	program_free(&made);
+	program_free(&study);
+	unlink(result);
+	free(golden);
+	free(text);
+}
+
 static void the_first_figure_of_the_readme_is_what_its_command_makes(void **state)
 {
-	static const char commands[] =
-	    "build/release/pound example paper | build/release/pound run - >campaign.json\n"
-	    "build/release/pound plot swept campaign.json >campaign.svg\n";
 	(void)state;
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 	skip(); // 720,000 runs
 #endif
-	char *readme = program_file("README.md", NULL),
-	     *golden = program_file("schema/figure/campaign.svg", NULL), result[32];
-	assert_non_null(readme);
-	assert_non_null(strstr(readme, commands));
-	assert_non_null(strstr(readme, "](schema/figure/campaign.svg)"));
-	struct program_outcome study = POUND("example", "paper");
-	struct program_outcome run = program_run((const char *const[]){"pound", "run", "-", NULL}, study.out);
-	keep(&run, result);
-	struct program_outcome figure = POUND("plot", "swept", result);
-	program_expect(&figure, 0);
-	assert_string_equal(figure.out, golden);
-	program_free(&figure);
-	program_free(&study);
-	unlink(result);
-	free(golden);
-	free(readme);
+	figure_of_a_page("README.md",
+	                 "build/release/pound example paper | build/release/pound run - >campaign.json\n"
+	                 "build/release/pound plot swept campaign.json >campaign.svg\n",
+	                 "paper", "swept", "schema/figure/campaign.svg");
+}
+
+static void the_figure_of_a_row_is_what_its_command_makes(void **state)
+{
+	(void)state;
+	figure_of_a_page("schema/figure/figures.md",
+	                 "build/release/pound example unequal_heights | build/release/pound run - >row.json\n"
+	                 "build/release/pound plot heights row.json >heights.svg\n",
+	                 "unequal_heights", "heights", "schema/figure/heights.svg");
 }
 
 #define SERVED(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
@@ -254,4 +269,5 @@ CHECK_MAIN(SERVED(a_figure_of_a_file_has_the_bytes_of_the_server),
            SERVED(a_figure_of_a_running_study_is_of_the_rows_so_far),
            SERVED(a_report_is_one_page_that_needs_nothing_else),
            cmocka_unit_test(the_first_figure_of_the_readme_is_what_its_command_makes),
+           cmocka_unit_test(the_figure_of_a_row_is_what_its_command_makes),
            SERVED(wrong_choices_end_with_2_and_what_is_not_there_with_1))

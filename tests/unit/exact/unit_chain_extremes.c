@@ -1,10 +1,12 @@
-/* unit_chain_extremes.c - stiff and extreme rows of buildings, a table: steps on, energy kept, the same bytes again.
+/* unit_chain_extremes.c - stiff and extreme rows of buildings, a table: steps on, energy kept, the same bytes by 1, 4 and 8 lanes.
  *
  * `make extremes` prints the table. */
+#include "engine/numeric/cpu_width.h"
 #include "tests/support/chain_scenes.h"
 #include "tests/support/check.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 #include <time.h>
 
@@ -45,6 +47,21 @@ static void pair_of_buildings(int left, int right)
 	row_harmonic(&row, 1.4, 1.5, 4);
 }
 
+/* Runs the row by other lane counts: the same bytes. */
+static void lanes_check(void)
+{
+	static struct row other;
+	for (int lanes = 1; lanes <= 8; lanes = lanes == 1 ? 4 : 2 * lanes) {
+		if (pound_dispatch_width(lanes) < 0)
+			continue;
+		other = row;
+		const struct pound_chain_task task = row_task(&other, SAMPLES, 0.01, ENERGY);
+		row_run(&other, &task, lanes);
+		assert_memory_equal(row.floor_measures, other.floor_measures, sizeof row.floor_measures);
+		assert_memory_equal(row.link_measures, other.link_measures, sizeof row.link_measures);
+	}
+}
+
 /* Runs the row, prints its line of the table, and checks it. */
 static void scene_check(const char *what)
 {
@@ -64,6 +81,7 @@ static void scene_check(const char *what)
 	assert_int_equal(result.status, POUND_OK);
 	assert_true(drift > 0 && drift < 1);
 	assert_true(result.energy_residual < 1e-10);
+	lanes_check();
 }
 
 static void table_head(void)
@@ -72,10 +90,13 @@ static void table_head(void)
 	       "| --- | --- | --- | --- | --- | --- | --- |\n");
 }
 
-static const char *text(const char *format, double value)
+static const char *text(const char *format, ...)
 {
 	static char line[128];
-	snprintf(line, sizeof line, format, value);
+	va_list values;
+	va_start(values, format);
+	vsnprintf(line, sizeof line, format, values);
+	va_end(values);
 	return line;
 }
 
@@ -86,7 +107,7 @@ static void any_number_of_stories(void **state)
 	table_head();
 	for (size_t k = 0; k < sizeof stories / sizeof stories[0]; k++) {
 		pair_of_buildings(stories[k][0], stories[k][1]);
-		scene_check(text("%.0f stories on the left", stories[k][0]));
+		scene_check(text("%d and %d stories", stories[k][0], stories[k][1]));
 	}
 }
 
@@ -192,7 +213,7 @@ static void stories_that_yield_at_once(void **state)
 			row.buildings[b].damping = ROW_STIFFNESS;
 			row.buildings[b].law = (struct pound_backbone){.law = law, .hardening = 0, .yield = 0.002};
 		}
-		scene_check(text("law %.0f, straight modes, no hardening", law));
+		scene_check(text("%s, straight modes, no hardening", pound_law_name(law)));
 	}
 	pair_of_buildings(6, 6);
 	row.buildings[1] = row.buildings[0];
