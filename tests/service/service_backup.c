@@ -149,6 +149,8 @@ static void a_database_that_is_replaced_under_a_server_is_not_written_to(void **
 		submit(service, 2);
 		assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
 	}
+	check_report("database and lock removed, then replaced under a server: 4 of 4 studies refused with 503; "
+	             "put back: accepted");
 	char *log = program_file(service->log, NULL);
 	assert_non_null(strstr(log, "was removed or replaced while this server runs"));
 	free(log);

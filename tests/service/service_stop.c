@@ -80,7 +80,7 @@ static void a_terminal_that_hangs_up_does_not_end_it(void **state)
 	struct service *service = *state;
 	kill(service->pid, SIGHUP);
 	// a process that a signal has ended does not end with 0
-	service_stop(service);
+	check_report("SIGHUP, and then SIGTERM: ended with 0 after %.2f s", stop_s(service));
 }
 
 /* Short documents of which one block takes a quarter of a minute or more. */
