@@ -273,7 +273,6 @@ static void print_list(const struct reading *result, const char *at, const struc
 /* How wide the gap of a cell has to be, and what rules ask for. */
 static void print_needs(const struct reading *result, const char *at)
 {
-	cell_failed(result, at);
 	printf("\ngap needed: mean %.4g m, standard deviation %.4g m, largest %.4g m of %.0f runs\n",
 	       reading_number(result, "%s/gap_needed/mean_m", at),
 	       reading_number(result, "%s/gap_needed/standard_deviation_m", at),
@@ -283,8 +282,16 @@ static void print_needs(const struct reading *result, const char *at)
 		putchar('\n');
 		print_list(result, at, &NEEDS[k]);
 	}
-	if (!reading_has(result, "%s/outputs/0", at))
-		print_outputs(result, at);
+}
+
+/* The same at a contact of a row. */
+static void print_contact(const struct reading *result, const char *at)
+{
+	const double left = reading_number(result, "%s/left_building", at);
+	printf("\ncontact %.0f: level %.4g of building %.0f and level %.4g of building %.0f\n",
+	       reading_number(result, "%s/contact", at), reading_number(result, "%s/levels/0", at), left,
+	       reading_number(result, "%s/levels/1", at), left + 1);
+	print_needs(result, at);
 }
 
 static void print_fragility(const struct reading *result)
@@ -294,6 +301,8 @@ static void print_fragility(const struct reading *result)
 		const char *path;
 		snprintf(at, sizeof at, "/fragility/%d", k);
 		printf("\nfragility over %s", reading_text(result, "%s/intensity", at));
+		if (reading_has(result, "%s/contact", at))
+			printf(", contact %.0f", reading_number(result, "%s/contact", at));
 		for (int s = 0; (path = reading_member(result, s, "%s/sweep", at)); s++)
 			printf(", %s", path);
 		putchar('\n');
@@ -315,7 +324,16 @@ static void separation(const struct reading *result)
 		snprintf(at, sizeof at, "/cells/%d", cell);
 		if (reading_has(result, "/cells/1"))
 			cell_sweep(result, cell);
-		print_needs(result, at);
+		cell_failed(result, at);
+		if (!reading_has(result, "%s/contacts", at))
+			print_needs(result, at);
+		for (int k = 0; k < reading_count(result, "%s/contacts", at); k++) {
+			char contact[64];
+			snprintf(contact, sizeof contact, "%s/contacts/%d", at, k);
+			print_contact(result, contact);
+		}
+		if (!reading_has(result, "%s/outputs/0", at))
+			print_outputs(result, at);
 	}
 	print_fragility(result);
 	if (reading_has(result, "/cells/0/outputs/0")) {

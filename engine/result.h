@@ -94,9 +94,11 @@ struct pound_contact_response {
 #define X(member, name) double member;
 	POUND_CONTACT_MEASURES(X)
 #undef X
-	double speed_max;  /* largest speed at which a contact begins [m/s] */
-	double lost;       /* in contacts [J]; NAN as above */
-	double gap_needed; /* largest closing displacement without contact, NAN: not asked [m] */
+	double speed_max; /* largest speed at which a contact begins [m/s] */
+	double lost;      /* in contacts [J]; NAN as above */
+	// without contact, NAN: not asked
+	double gap_needed;                    /* largest closing displacement [m] */
+	double level_free[POUND_OSCILLATORS]; /* largest displacements of both buildings at its levels [m] */
 };
 
 /* One signal's response of a row of buildings. */
@@ -319,13 +321,13 @@ struct pound_rule {
 	struct pound_estimate probability; /* to pound with it */
 };
 
-/* How wide the gap of a scene has to be: from its runs, those of matrices A and B of a design. */
+/* How wide a gap of a scene has to be: from its runs, those of matrices A and B of a design. */
 struct pound_needs {
 	int64_t runs;                           /* that have a result */
 	int clusters;                           /* of runs that are independent of each other's */
 	double mean, deviation, largest;        /* of the gap needed [m] */
-	double displacement[POUND_OSCILLATORS]; /* means of the largest without contact [m] */
-	double correlation;                     /* of both in white noise, by frequencies and damping */
+	double displacement[POUND_OSCILLATORS]; /* means of the largest without contact, of both sides [m] */
+	double correlation; /* of both in white noise, by frequencies and damping, of buildings of first modes */
 	struct pound_rule rules[POUND_RULES];
 	struct pound_estimate *probability; /* to pound with each gap of the result  (n_gaps) */
 	struct pound_estimate *gap;         /* for each probability of the study [m]  (n_probabilities) */
@@ -341,6 +343,7 @@ struct pound_fragility {
 /* The fragility curves of the cells that differ in their intensity alone. */
 struct pound_stripe_set {
 	int cell;                          /* the first of them */
+	int contact;                       /* of a row of buildings, else 0 */
 	struct pound_fragility *curves;    /* of each gap of the result  (n_gaps) */
 	struct pound_estimate *return_gap; /* of each return period [m]  (n_periods) */
 	double beyond;                     /* annual rate of earthquakes beyond the intensities */
@@ -349,7 +352,7 @@ struct pound_stripe_set {
 struct pound_separation_result {
 	int n_gaps;
 	double gaps[POUND_GAPS_MAX]; /* [m] */
-	struct pound_needs *needs;   /* of each cell  (n_cells) */
+	struct pound_needs *needs;   /* of each cell and contact  (n_cells x pound_study_gaps) */
 	int n_sets;
 	struct pound_stripe_set *sets; /* (n_sets) */
 };

@@ -27,8 +27,9 @@ enum {
 	POUND_SAMPLES_MAX = 2 * POUND_INPUTS_MAX + 2 + POUND_GROUPS_MAX, /* of a row of the design */
 	POUND_BUILDINGS_MAX = 8,                                         /* of a row of buildings */
 	POUND_STOREYS_MAX = 50,                                          /* of a building */
-	POUND_CONTACTS_MAX = 400,                                        /* between the buildings of a row */
-	POUND_PLACES_MAX = 64,                                           /* storeys whose outputs are wanted */
+	POUND_GAPS_OF_ROW_MAX = 60,   /* contacts of a separation study: three outputs each */
+	POUND_CONTACTS_MAX = 400,     /* between the buildings of a row */
+	POUND_PLACES_MAX = 64,        /* storeys whose outputs are wanted */
 	POUND_GAPS_MAX = 200,         /* gaps whose probability to pound is wanted */
 	POUND_PROBABILITIES_MAX = 20, /* whose gaps are wanted */
 	POUND_STRIPES_MAX = 100,      /* intensities of a fragility curve, points of a hazard curve */
@@ -385,6 +386,7 @@ void pound_study_split(const struct pound_study *study, int signals, struct poun
 
 bool pound_study_sampled(const struct pound_study *study); /* its runs are those of a design */
 bool pound_study_pounds(const struct pound_study *study);  /* its outputs need runs with contact */
+int pound_study_gaps(const struct pound_study *study); /* of a separation study: contacts of its row, or 1 */
 
 /* Lines of documentation of the tables' rows. */
 const char *pound_law_text(int row);

@@ -136,6 +136,8 @@ enum pound_link_measure {
 	POUND_LINK_SPEED_MAX,   /* largest one of all contacts [m/s] */
 	POUND_LINK_LOST,        /* work on the contact; one still open at the end counts with what it holds [J] */
 	POUND_LINK_CLOSING_MAX, /* largest displacement of the left side less that of the right one, 0 at rest [m] */
+	POUND_LINK_LEFT_MAX,    /* largest magnitude of the left side's displacement [m] */
+	POUND_LINK_RIGHT_MAX, /* of the right side's */
 	POUND_LINK_MEASURES
 };
 

@@ -154,24 +154,43 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 	*most = value[0];
 }
 
-/* Largest closing displacement of a link that does not act, whose floors' displacements are those of the step and of its end. */
-static void closing_keep(struct chain *c, struct link *l, double time)
+/* Largest sum of a link's ends, whose floors' displacements are those of the step and of its end.
+ *
+ * Given    l        its ends, or some of them
+ *          mirror   -1: of the magnitude; 0: of values above 0
+ *          most     the largest so far; changed
+ */
+static void ends_keep(const struct chain *c, const struct link *l, double mirror, double time, double *most)
 {
 	const struct enclosures *x = &c->displacement;
+	const double there = link_sum(l, c->u.at);
 	double fourth_max = 0, value[W];
 	for (int k = 0; k < l->n_ends; k++)
 		fourth_max = fma(fabs(l->weight[k]), x->fourth_max.at[l->floor[k]], fourth_max);
 	const struct enclosure enclosure = {vsplat(link_sum(l, x->u0.at)), vsplat(link_sum(l, x->v0.at)),
 	                                    vsplat(link_sum(l, x->u1.at)), vsplat(link_sum(l, x->v1.at)),
 	                                    vsplat(fourth_max)};
-	double *most = &l->measures[POUND_LINK_CLOSING_MAX];
-	*most = fmax(*most, link_sum(l, c->u.at));
+	*most = fmax(*most, fmax(there, mirror * there));
 	const vm inside = vless(vsplat(*most), enclosure_reach(&enclosure)) & vmask(1);
 	if (!vany(inside))
 		return;
 	struct power series = {0};
 	for (int n = 0; n <= c->order; n++)
 		series.c[n] = vsplat(link_sum(l, c->displacements[n].at));
-	lanes_store(value, top_follow(&series, c->order, vsplat(time), vsplat(*most), vsplat(0), inside));
+	lanes_store(value, top_follow(&series, c->order, vsplat(time), vsplat(*most), vsplat(mirror), inside));
 	*most = value[0];
+}
+
+/* Largest closing displacement and those of both sides, of a link that does not act. */
+static void closing_keep(const struct chain *c, const struct link *l, double time)
+{
+	struct link side[2] = {{.n_ends = 0}, {.n_ends = 0}};
+	for (int k = 0; k < l->n_ends; k++) {
+		struct link *of = &side[l->weight[k] < 0];
+		of->floor[of->n_ends] = l->floor[k];
+		of->weight[of->n_ends++] = l->weight[k];
+	}
+	ends_keep(c, l, 0, time, &l->measures[POUND_LINK_CLOSING_MAX]);
+	for (int k = 0; k < 2; k++)
+		ends_keep(c, &side[k], -1, time, &l->measures[POUND_LINK_LEFT_MAX + k]);
 }

@@ -501,7 +501,7 @@ static void chain_write(struct chain *c, enum pound_status status)
 	for (int j = 0; j < c->n_links; j++) {
 		double *m = c->link[j].measures;
 		m[POUND_LINK_TIME] = c->link[j].time;
-		m[POUND_LINK_CLOSING_MAX] = NAN;
+		m[POUND_LINK_CLOSING_MAX] = m[POUND_LINK_LEFT_MAX] = m[POUND_LINK_RIGHT_MAX] = NAN;
 		if (!(asked & POUND_CHAIN_FORCES))
 			m[POUND_LINK_FORCE_MAX] = NAN;
 		if (m[POUND_LINK_CONTACTS] == 0)

@@ -377,6 +377,23 @@ static double row_gap_needed(const struct pound_row_response *row, const struct 
 	return row->contacts[at].gap_needed;
 }
 
+static double row_left_free(const struct pound_row_response *row, const struct pound_scene *scene, int at)
+{
+	(void)scene;
+	return row->contacts[at].level_free[0];
+}
+
+static double row_right_free(const struct pound_row_response *row, const struct pound_scene *scene, int at)
+{
+	(void)scene;
+	return row->contacts[at].level_free[1];
+}
+
+static bool has_levels(const struct pound_scene *scene)
+{
+	return is_row(scene) && pound_row_contacts(scene) > 0;
+}
+
 static bool has_gaps(const struct pound_scene *scene)
 {
 	return !is_row(scene) || pound_row_contacts(scene) > 0;
@@ -475,6 +492,14 @@ static const struct output {
     {"gap_needed_m",
      "largest closing displacement u_1 - u_2 without contact, of the bodies or at each contact of a row [m]",
      "", "a contact", has_gaps, gap_needed, one, row_gap_needed, row_one, .contacts = true,
+     .asks = POUND_ASKS_FREE_PAIR},
+    {"level_displacement_free_left_m",
+     "largest displacement of the left building at the level of each contact, without contact [m]",
+     "buildings", "a contact", has_levels, NULL, NULL, row_left_free, row_one, .contacts = true,
+     .asks = POUND_ASKS_FREE_PAIR},
+    {"level_displacement_free_right_m",
+     "largest displacement of the right building at the level of each contact, without contact [m]",
+     "buildings", "a contact", has_levels, NULL, NULL, row_right_free, row_one, .contacts = true,
      .asks = POUND_ASKS_FREE_PAIR},
     {"peak_relative_displacement_free_m", "largest abs(u_1 - u_2) of the bodies without contact [m]",
      "two oscillators", "two oscillators", is_pair, relative_free, one, .asks = POUND_ASKS_FREE_PAIR},

@@ -381,6 +381,9 @@ static void row_free(struct pound_request *request, int a)
 	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0 ||
 	                       pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR,
 	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
+	// who asks for gaps needed alone has all from the buildings together
+	for (int b = 0; b < scene.n_buildings && !pound_study_pounds(study); b++)
+		request->row_asks[a].buildings[b].wanted = false;
 }
 
 /* Marches registered so far, of both kinds. */
@@ -461,13 +464,14 @@ static void pounding_ask(struct pound_request *request, int first, int end, stru
                          struct pound_work *work)
 {
 	int before = marches_known(request);
+	const bool pounds = pound_study_pounds(request->campaign->study);
 	for (int a = first; a < end; a++) {
 		struct ask *ask = &request->asks[a];
-		if (ask->scene.n_buildings) {
+		if (ask->scene.n_buildings && pounds) {
 			const struct pound_scene scene = pound_request_row_scene(request, ask);
 			pound_row_ask_pounding(&request->rows, &scene, &request->row_asks[a],
 			                       &request->motions[ask->motion], work);
-		} else
+		} else if (!ask->scene.n_buildings)
 			ask_pounding(request, ask, work);
 	}
 	counted->asked += end - first;

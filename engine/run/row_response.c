@@ -132,19 +132,26 @@ static struct pound_storey_response storey_of(const struct storey_known *k)
 	return r;
 }
 
+/* A measure of a contact in the run without contact; NAN: not run. */
+static double without(const double *closing, enum pound_link_measure measure, int e)
+{
+	return closing ? ldexp(closing[measure], e) : NAN;
+}
+
 /* Given    closing   its row of measures of the run without contact; NULL: not run */
 static struct pound_contact_response contact_of(const double *link, const double *closing, int e)
 {
-	return (struct pound_contact_response){.impulse_max = ldexp(link[POUND_LINK_IMPULSE_MAX], e),
-	                                       .force_max = ldexp(link[POUND_LINK_FORCE_MAX], e),
-	                                       .contact_count = link[POUND_LINK_CONTACTS],
-	                                       .contact_time = link[POUND_LINK_TIME],
-	                                       .first_time = link[POUND_LINK_FIRST_TIME],
-	                                       .first_speed = ldexp(link[POUND_LINK_FIRST_SPEED], e),
-	                                       .speed_max = ldexp(link[POUND_LINK_SPEED_MAX], e),
-	                                       .lost = ldexp(link[POUND_LINK_LOST], 2 * e),
-	                                       .gap_needed =
-	                                           closing ? ldexp(closing[POUND_LINK_CLOSING_MAX], e) : NAN};
+	return (struct pound_contact_response){
+	    .impulse_max = ldexp(link[POUND_LINK_IMPULSE_MAX], e),
+	    .force_max = ldexp(link[POUND_LINK_FORCE_MAX], e),
+	    .contact_count = link[POUND_LINK_CONTACTS],
+	    .contact_time = link[POUND_LINK_TIME],
+	    .first_time = link[POUND_LINK_FIRST_TIME],
+	    .first_speed = ldexp(link[POUND_LINK_FIRST_SPEED], e),
+	    .speed_max = ldexp(link[POUND_LINK_SPEED_MAX], e),
+	    .lost = ldexp(link[POUND_LINK_LOST], 2 * e),
+	    .gap_needed = without(closing, POUND_LINK_CLOSING_MAX, e),
+	    .level_free = {without(closing, POUND_LINK_LEFT_MAX, e), without(closing, POUND_LINK_RIGHT_MAX, e)}};
 }
 
 /* The storeys of one building; adds what is wrong with its marches. */

@@ -8,14 +8,16 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/scene/building.h"
 #include "engine/separation/separation.h"
 
 enum {
 	GAPS_ROUND = 40, /* gaps at most that the study does not name, beside 0 */
 	MATRICES = 2,    /* A and B */
+	// the study's own outputs, each once for every contact; without the last the right body is a wall
 	GAP = 0,
 	LEFT = 1,
-	RIGHT = 2, /* the study's own outputs; without the last the right body is a wall */
+	RIGHT = 2,
 };
 
 /* ---- memory ---- */
@@ -53,22 +55,35 @@ static int sets_of(const struct pound_cells *c)
 	return c->study->separation.stripes < 0 ? 0 : c->n_cells / stripes_of(c->study);
 }
 
+int pound_study_gaps(const struct pound_study *study)
+{
+	return study->scene.n_buildings ? pound_row_contacts(&study->scene) : 1;
+}
+
 static int gaps_most(const struct pound_study *study)
 {
 	return study->separation.n_gaps ? study->separation.n_gaps : GAPS_ROUND + 1;
 }
 
 /* The runs of all stripes, and as many sorted. */
+static size_t numbers_of(const struct pound_cells *c)
+{
+	return 2 * runs_of(c) * (size_t)stripes_of(c->study);
+}
+
+/* These and the buildings of a scene. */
 size_t pound_separation_scratch(const struct pound_cells *campaign)
 {
-	return separates(campaign) ? 2 * runs_of(campaign) * (size_t)stripes_of(campaign->study) : 0;
+	const size_t row = pound_row_bytes(&campaign->study->scene);
+	return separates(campaign) ? numbers_of(campaign) + (row + sizeof(double) - 1) / sizeof(double) : 0;
 }
 
 /* Carves the parts of the result out of memory, or with memory NULL only counts the bytes. */
 static size_t carve(const struct pound_cells *c, char *memory, struct pound_separation_result *result)
 {
 	const struct pound_separation *asked = &c->study->separation;
-	const size_t gaps = (size_t)gaps_most(c->study), cells = (size_t)c->n_cells, sets = (size_t)sets_of(c);
+	const size_t gaps = (size_t)gaps_most(c->study), each = (size_t)pound_study_gaps(c->study),
+	             cells = (size_t)c->n_cells * each, sets = (size_t)sets_of(c) * each;
 	const size_t values = pound_study_sampled(c->study) ? 0 : (size_t)c->n_signals;
 	size_t at = 0;
 	struct pound_separation_result none, *into = memory ? result : &none;
@@ -122,15 +137,21 @@ static int samples_counted(const struct pound_run *run)
 	return pound_study_sampled(run->campaign.study) ? MATRICES : 1;
 }
 
-/* The gaps needed in a cell. */
-static struct pound_needed needed_of(const struct pound_run *run, int cell, double *gap)
+/* The number of one of the study's own outputs at a contact. */
+static int own(const struct pound_run *run, int output, int contact)
+{
+	return output * pound_study_gaps(run->campaign.study) + contact;
+}
+
+/* The gaps needed at a contact in a cell. */
+static struct pound_needed needed_of(const struct pound_run *run, int cell, int contact, double *gap)
 {
 	const struct pound_cells *c = &run->campaign;
 	double *at = gap;
 	for (int row = 0; row < run->rows; row++)
 		for (int sample = 0; sample < samples_counted(run); sample++)
 			for (int signal = 0; signal < c->n_signals; signal++)
-				*at++ = *run_values(run, cell, row, sample, signal, GAP);
+				*at++ = *run_values(run, cell, row, sample, signal, own(run, GAP, contact));
 	return (struct pound_needed){
 	    .n_clusters = clusters_of(c, run->rows), .size = cluster_size(c), .gap = gap};
 }
@@ -158,19 +179,25 @@ static void moments(const struct pound_needed *needed, struct pound_needs *needs
 
 /* ---- rules ---- */
 
-/* Means over the signals of a structure of both bodies' largest displacements; how many signals have a result. */
-static int displacements_of(const struct pound_run *run, int cell, int row, int sample,
-                            double mean[POUND_OSCILLATORS])
+/* a structure of a cell: a row of the design and a sample of it */
+struct structure {
+	const struct pound_run *run;
+	int cell, row, sample;
+};
+
+/* Means over the signals of a structure of the largest displacements on both sides of a contact; how many signals have a result. */
+static int displacements_of(const struct structure *s, int contact, double mean[POUND_OSCILLATORS])
 {
-	const bool wall = run->campaign.study->separation.n_own <= RIGHT;
+	const struct pound_run *run = s->run;
+	const bool wall = run->campaign.study->separation.n_own <= own(run, RIGHT, 0);
 	double sum[POUND_OSCILLATORS] = {0};
 	int n = 0;
 	for (int signal = 0; signal < run->campaign.n_signals; signal++) {
-		const double left = *run_values(run, cell, row, sample, signal, LEFT);
+		const double left = *run_values(run, s->cell, s->row, s->sample, signal, own(run, LEFT, contact));
 		if (isnan(left))
 			continue;
 		sum[0] += left;
-		sum[1] += wall ? 0 : *run_values(run, cell, row, sample, signal, RIGHT);
+		sum[1] += wall ? 0 : *run_values(run, s->cell, s->row, s->sample, signal, own(run, RIGHT, contact));
 		n++;
 	}
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
@@ -178,36 +205,72 @@ static int displacements_of(const struct pound_run *run, int cell, int row, int 
 	return n;
 }
 
-/* What the rules ask for: of each structure by the means over its signals, and the mean of that over the structures. */
-static void rules_apply(const struct pound_run *run, int cell, const struct pound_needed *needed,
-                        struct pound_needs *needs)
+/* frequencies and damping of first modes of the bodies of a scene; 0: a wall */
+struct first_modes {
+	double frequency[POUND_BUILDINGS_MAX], damping[POUND_BUILDINGS_MAX];
+};
+
+static void first_modes_of(const struct pound_scene *scene, struct first_modes *modes)
 {
-	double displacement[POUND_OSCILLATORS] = {0}, gaps[POUND_RULES] = {0}, correlation = 0, n = 0;
+	for (int b = 0; b < scene->n_buildings; b++) {
+		modes->frequency[b] = modes->damping[b] = 0;
+		if (pound_row_storeys(scene, b))
+			pound_building_first_mode(&scene->buildings[b], &modes->frequency[b], &modes->damping[b]);
+	}
+	for (int i = 0; i < POUND_OSCILLATORS && !scene->n_buildings; i++) {
+		const struct pound_oscillator *o = &scene->oscillators[i];
+		modes->frequency[i] = o->rigid_wall ? 0 : o->frequency_hz;
+		modes->damping[i] = o->damping_ratio;
+	}
+}
+
+/* Adds what the rules ask for at all contacts of a structure; false: no signal has a result. */
+static bool rules_add(const struct structure *s, struct pound_needs *needs, void *row_memory)
+{
+	const struct pound_scene scene =
+	    pound_cells_scene(&s->run->campaign, s->cell, s->row, s->sample, row_memory);
+	struct first_modes modes;
+	bool any = false;
+	first_modes_of(&scene, &modes);
+	for (int g = 0; g < pound_study_gaps(s->run->campaign.study); g++) {
+		struct pound_row_contact contact = {.left_building = 0};
+		double mean[POUND_OSCILLATORS];
+		if (!displacements_of(s, g, mean))
+			continue;
+		if (scene.n_buildings)
+			pound_row_contact_of(&scene, g, &contact);
+		const double rho = pound_rule_correlation(&modes.frequency[contact.left_building],
+		                                          &modes.damping[contact.left_building]);
+		needs[g].correlation += rho;
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			needs[g].displacement[i] += mean[i];
+		for (int k = 0; k < POUND_RULES; k++)
+			needs[g].rules[k].gap += pound_rule_gap(k, mean, rho);
+		any = true;
+	}
+	return any;
+}
+
+/* What the rules ask for: of each structure by the means over its signals, and the mean of that over the structures. */
+static void rules_apply(const struct pound_run *run, int cell, struct pound_needs *needs, void *row_memory)
+{
+	const int gaps = pound_study_gaps(run->campaign.study);
+	double n = 0;
+	for (int g = 0; g < gaps; g++) {
+		needs[g].displacement[0] = needs[g].displacement[1] = needs[g].correlation = 0;
+		for (int k = 0; k < POUND_RULES; k++)
+			needs[g].rules[k].gap = 0;
+	}
 	for (int row = 0; row < run->rows; row++)
-		for (int sample = 0; sample < samples_counted(run); sample++) {
-			const struct pound_scene scene = pound_cells_scene(&run->campaign, cell, row, sample, NULL);
-			double frequency[POUND_OSCILLATORS], damping[POUND_OSCILLATORS], mean[POUND_OSCILLATORS];
-			if (!displacements_of(run, cell, row, sample, mean))
-				continue;
-			for (int i = 0; i < POUND_OSCILLATORS; i++) {
-				const struct pound_oscillator *o = &scene.oscillators[i];
-				frequency[i] = o->rigid_wall ? 0 : o->frequency_hz;
-				damping[i] = o->damping_ratio;
-				displacement[i] += mean[i];
-			}
-			const double rho = pound_rule_correlation(frequency, damping);
-			correlation += rho;
-			for (int k = 0; k < POUND_RULES; k++)
-				gaps[k] += pound_rule_gap(k, mean, rho);
-			n++;
-		}
-	for (int i = 0; i < POUND_OSCILLATORS; i++)
-		needs->displacement[i] = displacement[i] / n;
-	needs->correlation = correlation / n;
-	for (int k = 0; k < POUND_RULES; k++)
-		needs->rules[k] = (struct pound_rule){.gap = gaps[k] / n,
-		                                      .over = gaps[k] / n / needs->mean,
-		                                      .probability = pound_needed_probability(needed, gaps[k] / n)};
+		for (int sample = 0; sample < samples_counted(run); sample++)
+			n += rules_add(&(struct structure){run, cell, row, sample}, needs, row_memory);
+	for (int g = 0; g < gaps; g++) {
+		for (int i = 0; i < POUND_OSCILLATORS; i++)
+			needs[g].displacement[i] /= n;
+		needs[g].correlation /= n;
+		for (int k = 0; k < POUND_RULES; k++)
+			needs[g].rules[k].gap /= n;
+	}
 }
 
 /* ---- a study ---- */
@@ -261,18 +324,23 @@ static void outputs_reduce(struct pound_run *run, int cell)
 	}
 }
 
-static void needs_reduce(struct pound_run *run, int cell, double *scratch)
+/* The needs at a contact in a cell, whose rules are applied already. */
+static void needs_reduce(struct pound_run *run, int cell, int contact, double *scratch)
 {
 	const struct pound_separation *asked = &run->campaign.study->separation;
 	const struct pound_separation_result *result = &run->result.separation;
-	struct pound_needs *needs = &result->needs[cell];
-	struct pound_needed needed = needed_of(run, cell, scratch);
+	struct pound_needs *needs = &result->needs[cell * pound_study_gaps(run->campaign.study) + contact];
+	struct pound_needed needed = needed_of(run, cell, contact, scratch);
 	const size_t runs = (size_t)needed.n_clusters * (size_t)needed.size;
 	double *sorted = scratch + runs;
 	needed.n_sorted = pound_needed_sort(&needed, sorted);
 	needed.sorted = sorted;
 	moments(&needed, needs);
-	rules_apply(run, cell, &needed, needs);
+	for (int k = 0; k < POUND_RULES; k++) {
+		struct pound_rule *rule = &needs->rules[k];
+		rule->over = rule->gap / needs->mean;
+		rule->probability = pound_needed_probability(&needed, rule->gap);
+	}
 	for (int g = 0; g < result->n_gaps; g++)
 		needs->probability[g] = pound_needed_probability(&needed, result->gaps[g]);
 	for (int k = 0; k < asked->n_probabilities; k++)
@@ -302,7 +370,7 @@ static void set_reduce(struct pound_run *run, struct pound_stripe_set *set, doub
 	const struct pound_hazard hazard = {asked->n_intensities, asked->intensities, asked->rates};
 	const size_t runs = runs_of(&run->campaign);
 	for (int i = 0; i < stripes.n; i++)
-		needed[i] = needed_of(run, set->cell + i * stride, scratch + (size_t)i * runs);
+		needed[i] = needed_of(run, set->cell + i * stride, set->contact, scratch + (size_t)i * runs);
 	set->beyond = hazard.n ? pound_hazard_weights(&hazard, &stripes, weights) : NAN;
 	for (int g = 0; g < result->n_gaps; g++) {
 		set->curves[g] = pound_fragility_fit(&stripes, result->gaps[g]);
@@ -320,10 +388,11 @@ void pound_separation_reduce(struct pound_run *run, double *scratch)
 	const struct pound_cells *c = &run->campaign;
 	const struct pound_separation *asked = &c->study->separation;
 	struct pound_separation_result *result = &run->result.separation;
+	const int gaps = pound_study_gaps(c->study);
 	double largest = 0;
-	for (int cell = 0; cell < c->n_cells && !asked->n_gaps; cell++) {
+	for (int k = 0; k < c->n_cells * gaps && !asked->n_gaps; k++) {
 		struct pound_needs needs;
-		const struct pound_needed needed = needed_of(run, cell, scratch);
+		const struct pound_needed needed = needed_of(run, k / gaps, k % gaps, scratch);
 		moments(&needed, &needs);
 		largest = fmax(largest, needs.largest);
 	}
@@ -331,16 +400,19 @@ void pound_separation_reduce(struct pound_run *run, double *scratch)
 	for (int g = 0; g < asked->n_gaps; g++)
 		result->gaps[g] = asked->gaps[g];
 	for (int cell = 0; cell < c->n_cells; cell++) {
-		needs_reduce(run, cell, scratch);
+		rules_apply(run, cell, &result->needs[cell * gaps], scratch + numbers_of(c));
+		for (int contact = 0; contact < gaps; contact++)
+			needs_reduce(run, cell, contact, scratch);
 		if (!pound_study_sampled(c->study))
 			outputs_reduce(run, cell);
 	}
 	result->n_sets = 0;
 	const int stride = asked->stripes < 0 ? 0 : stride_of(c->study, asked->stripes);
 	for (int cell = 0; cell < c->n_cells && asked->stripes >= 0; cell++)
-		if (cell / stride % stripes_of(c->study) == 0) {
+		for (int contact = 0; contact < gaps && cell / stride % stripes_of(c->study) == 0; contact++) {
 			struct pound_stripe_set *set = &result->sets[result->n_sets++];
 			set->cell = cell;
+			set->contact = contact;
 			set_reduce(run, set, scratch);
 		}
 }

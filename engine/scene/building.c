@@ -114,3 +114,36 @@ void pound_building_storeys(const struct pound_building *building, struct pound_
 	storeys->frequency = w[0];
 	forms[building->damping].dashpots(building, w, storeys);
 }
+
+/* The first mode of a building of initial stiffness.
+ *
+ * Given    building    no rigid wall
+ * Returns  frequency   w    rad/s
+ *          damping     xi   -       share of critical damping: what the dashpots take from the mode alone
+ *
+ *   xi = phi^T C phi / (2 w phi^T M phi)
+ *
+ * It is the damping ratio of the document where the form of damping has it in the first mode; of other forms modes act on each
+ * other through C, and it is the diagonal's.
+ *
+ * Source   Chopra, Dynamics of Structures, 14.3 and 11.4
+ * Test     unit_building: the_first_mode_has_the_damping_of_its_form
+ */
+void pound_building_first_mode(const struct pound_building *building, double *frequency, double *damping)
+{
+	struct pound_storeys storeys;
+	struct pound_modes modes;
+	pound_building_storeys(building, &storeys);
+	*frequency = storeys.frequency;
+	*damping = pound_each_of(&building->damping_ratio, 0);
+	if (storeys.modal)
+		return;
+	pound_modes_fill(storeys.n, storeys.mass, storeys.stiffness, &modes);
+	double sum = storeys.mass_damping, below = 0;
+	for (int i = 0; i < storeys.n; i++) {
+		const double drift = modes.shape[0][i] - below;
+		sum += storeys.dashpot[i] * drift * drift;
+		below = modes.shape[0][i];
+	}
+	*damping = sum / (2 * storeys.frequency);
+}

@@ -16,5 +16,6 @@ struct pound_storeys {
 };
 
 void pound_building_storeys(const struct pound_building *building, struct pound_storeys *storeys);
+void pound_building_first_mode(const struct pound_building *building, double *frequency, double *damping);
 
 #endif

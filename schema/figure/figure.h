@@ -23,6 +23,7 @@
 /* What can be chosen of a figure: X(name, values between spaces or NULL, lowest, highest, text). */
 #define FIGURE_ARGUMENTS(X)                                                                                   \
 	X(cell,     NULL,                        0, 1000000, "cell of a swept study, from 0")                      \
+	X(contact,  NULL,                        0, 1000000, "contact of a row of buildings, from 0 (default: 0)")  \
 	X(output,   NULL,                        0, 0,       "name of an output (default: all)")                   \
 	X(index,    " S1 ST ",                   0, 0,       "which index (default: both, or ST)")                 \
 	X(x,        NULL,                        0, 0,       "path of the swept number along the axis (default: the last)") \

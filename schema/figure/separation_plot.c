@@ -1,6 +1,7 @@
 /* separation_plot.c - how wide a gap has to be: `separation` over the gap, `fragility` over a swept intensity. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schema/figure/plot.h"
@@ -11,8 +12,40 @@ enum { CURVES_MOST = 5, POINTS = 80, RULES_MOST = 3 };
 
 bool plot_has_separation(const cJSON *result)
 {
-	const cJSON *cell = plot_first(plot_member(result, "cells"));
-	return plot_first(plot_member(cell, "pounding")) != NULL;
+	const cJSON *cell = plot_first(plot_member(result, "cells")),
+	            *contact = plot_first(plot_member(cell, "contacts"));
+	return plot_first(plot_member(contact ? contact : cell, "pounding")) != NULL;
+}
+
+/* What is known of the gap in a cell, of a row of buildings at the chosen contact; NULL: there is none, with a fault. */
+static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
+{
+	const cJSON *contacts = plot_member(cell, "contacts");
+	const int n = cJSON_GetArraySize(contacts), k = plot->choice->contact ? atoi(plot->choice->contact) : 0;
+	if (!contacts && !plot->choice->contact)
+		return cell;
+	if (k >= 0 && k < n)
+		return cJSON_GetArrayItem(contacts, k);
+	if (contacts)
+		snprintf(plot->fault, sizeof plot->fault, "contact must be a whole number in [0, %d]", n - 1);
+	else
+		snprintf(plot->fault, sizeof plot->fault, "this result has no contacts: it is of two oscillators");
+	return NULL;
+}
+
+/* "contact 2, levels 3 and 2 of buildings 0 and 1, PGA 1 m/s2"; the place goes into the buffer. */
+static const char *place_text(const cJSON *needs, const char *sweep, char text[PLOT_TEXT])
+{
+	const cJSON *levels = plot_member(needs, "levels");
+	const double left = plot_number(needs, "left_building");
+	char number[2][32];
+	if (!levels)
+		return sweep;
+	snprintf(text, PLOT_TEXT, "contact %.0f, levels %s and %s of buildings %.0f and %.0f%s%.100s",
+	         plot_number(needs, "contact"), draw_number(plot_first(levels)->valuedouble, number[0]),
+	         draw_number(cJSON_GetArrayItem(levels, 1)->valuedouble, number[1]), left, left + 1,
+	         *sweep ? ", " : "", sweep);
+	return text;
 }
 
 static const cJSON *rule_at(const cJSON *cell, int k)
@@ -73,16 +106,16 @@ static void draw_probability(struct plot *plot, const cJSON *cell, struct panel 
 
 void plot_separation(struct plot *plot)
 {
-	char sweep[PLOT_TEXT], names[RULES_MOST][PLOT_TEXT], number[3][32];
+	char sweep[PLOT_TEXT], place[PLOT_TEXT], names[RULES_MOST][PLOT_TEXT], number[3][32];
 	struct key keys[1 + RULES_MOST] = {
 	    {.name = "share of runs that pound, 95 % band", .pen = {.ink = 0, .width = 2}, .band = true}};
-	const cJSON *cell = plot_cell(plot), *at_5 = NULL, *gap;
+	const cJSON *chosen = plot_cell(plot), *cell = chosen ? needs_of(plot, chosen) : NULL, *at_5 = NULL, *gap;
 	if (!cell)
 		return;
 	for (int k = 0; k < RULES_MOST; k++)
 		keys[1 + k] = (struct key){.name = spaced(plot_text(rule_at(cell, k), "name"), names[k]),
 		                           .pen = {.ink = (enum ink)(k + 1), .width = 1.8, .dash = draw_dash(k + 1)}};
-	plot_head(plot, "How wide a gap", plot_sweep_text(cell, 0, NULL, sweep));
+	plot_head(plot, "How wide a gap", place_text(cell, plot_sweep_text(chosen, 0, NULL, sweep), place));
 	const double top = draw_legend(&plot->d, 1 + RULES_MOST, keys, plot->y) + 8;
 	struct panel panel = {.height = 360};
 	panel_place(&plot->d, 1, 0, top, &panel);
@@ -132,7 +165,7 @@ static void draw_fragility(struct plot *plot, const cJSON *set, int g, int serie
 	{
 		if (!in_set(set, cell))
 			continue;
-		const cJSON *point = cJSON_GetArrayItem(plot_member(cell, "pounding"), g);
+		const cJSON *point = cJSON_GetArrayItem(plot_member(needs_of(plot, cell), "pounding"), g);
 		const double at = plot_number(plot_member(cell, "sweep"), plot_text(set, "intensity"));
 		char text[PLOT_TEXT], number[3][32];
 		snprintf(text, sizeof text, "gap %s m, intensity %s: %s",
@@ -147,13 +180,15 @@ void plot_fragility(struct plot *plot)
 {
 	const cJSON *chosen = plot_cell(plot), *set = plot_first(plot_member(plot->result, "fragility")), *cell,
 	            *curve;
-	char label[PLOT_TEXT], names[CURVES_MOST][PLOT_TEXT], sweep[PLOT_TEXT], number[2][32];
+	char label[PLOT_TEXT], names[CURVES_MOST][PLOT_TEXT], sweep[PLOT_TEXT], place[PLOT_TEXT], number[2][32];
 	struct range across = RANGE_EMPTY, whole = {0, 1};
 	struct key keys[CURVES_MOST];
 	int with[CURVES_MOST], n_curves = 0, n = 0, g = 0;
-	if (!chosen)
+	const cJSON *needs = chosen ? needs_of(plot, chosen) : NULL;
+	if (!needs)
 		return;
-	while (set && !in_set(set, chosen))
+	while (set && (!in_set(set, chosen) || (plot_member(set, "contact") &&
+	                                        plot_number(set, "contact") != plot_number(needs, "contact"))))
 		set = set->next;
 	const char *intensity = plot_text(set, "intensity");
 	cJSON_ArrayForEach(cell, plot_member(plot->result, "cells")) if (in_set(set, cell))
@@ -179,7 +214,8 @@ void plot_fragility(struct plot *plot)
 		g++;
 	}
 	plot_path_name(intensity, label);
-	plot_head(plot, "Fragility curves", plot_sweep_text(chosen, 1, &intensity, sweep));
+	plot_head(plot, "Fragility curves",
+	          place_text(needs, plot_sweep_text(chosen, 1, &intensity, sweep), place));
 	const double top = draw_legend(&plot->d, n, keys, plot->y) + 8;
 	struct panel panel = {.height = 360, .x_label = label, .y_label = "probability of pounding"};
 	panel_place(&plot->d, 1, 0, top, &panel);

@@ -289,13 +289,15 @@ static void put_signals(struct lines *lines, const cJSON *cell)
 	}
 }
 
-/* The probability to pound with each gap. */
-static void put_gaps(struct lines *lines, const cJSON *cell)
+/* The probability to pound with each gap, of the cell or of a contact in it. */
+static void put_gaps(struct lines *lines, const cJSON *cell, const cJSON *needs)
 {
 	const cJSON *gap;
-	cJSON_ArrayForEach(gap, member(cell, "pounding")) for (int header = lines->header; header >= 0; header--)
+	cJSON_ArrayForEach(gap, member(needs, "pounding")) for (int header = lines->header; header >= 0; header--)
 	{
 		put_scalars(lines, member(cell, "sweep"), "");
+		if (member(needs, "contact"))
+			put(lines, "", "contact", member(needs, "contact"));
 		put_scalars(lines, gap, "");
 		put_end(lines);
 	}
@@ -372,7 +374,7 @@ static const struct table *table_named(const char *name)
 /* Every kind of result by the members that it has. */
 static void put_result(struct lines *lines, const cJSON *result)
 {
-	const cJSON *cells = member(result, "cells"), *cell;
+	const cJSON *cells = member(result, "cells"), *cell, *contact;
 	if (cJSON_IsArray(member(result, "rows")))
 		put_trials(lines, member(result, "rows"), member(member(result, "timing"), "run_cpu_s"));
 	else if (cJSON_IsArray(member(result, "spectra")))
@@ -380,7 +382,10 @@ static void put_result(struct lines *lines, const cJSON *result)
 	else if (cJSON_IsArray(member(result, "signals")))
 		put_signals(lines, result);
 	else if (cells && member(first(cells), "pounding"))
-		cJSON_ArrayForEach(cell, cells) put_gaps(lines, cell);
+		cJSON_ArrayForEach(cell, cells) put_gaps(lines, cell, cell);
+	else if (cells && member(first(member(first(cells), "contacts")), "pounding"))
+		cJSON_ArrayForEach(cell, cells) cJSON_ArrayForEach(contact, member(cell, "contacts"))
+		    put_gaps(lines, cell, contact);
 	else if (cells && member(first(cells), "signals"))
 		cJSON_ArrayForEach(cell, cells) put_signals(lines, cell);
 	else

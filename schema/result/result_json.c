@@ -494,7 +494,7 @@ static void write_cell(struct writer *w, const struct pound_study *study, const 
 	if (pound_study_sampled(study))
 		writer_whole(w, "rows_dropped", cell->rows_dropped);
 	if (study->kind == POUND_KIND_SEPARATION)
-		result_separation_cell(w, study, result, c);
+		result_separation_cell(w, study, &scene, result, c);
 	if (pound_study_sampled(study))
 		write_sensitivity(w, study, cell, &scene);
 	else if (study->kind == POUND_KIND_SEPARATION)

@@ -33,12 +33,24 @@ static void write_rules(struct writer *w, const struct pound_needs *needs)
 	writer_end(w);
 }
 
-/* Test     unit_separation_result: the_result_is_what_brute_force_counts */
-void result_separation_cell(struct writer *w, const struct pound_study *study,
-                            const struct pound_result *result, int cell)
+/* Which contact of a row. */
+static void write_place(struct writer *w, const struct pound_scene *scene, int contact)
+{
+	struct pound_row_contact of;
+	pound_row_contact_of(scene, contact, &of);
+	writer_whole(w, "contact", contact);
+	writer_whole(w, "left_building", of.left_building);
+	writer_array(w, "levels", WRITER_LINE);
+	for (int side = 0; side < 2; side++)
+		writer_number(w, NULL, of.levels[side]);
+	writer_end(w);
+}
+
+static void write_needs(struct writer *w, const struct pound_study *study, const struct pound_result *result,
+                        int cell, int contact)
 {
 	const struct pound_separation_result *separation = &result->separation;
-	const struct pound_needs *needs = &separation->needs[cell];
+	const struct pound_needs *needs = &separation->needs[cell * pound_study_gaps(study) + contact];
 	writer_object(w, "gap_needed", WRITER_LINES);
 	writer_whole(w, "runs", needs->runs);
 	writer_whole(w, "independent", needs->clusters);
@@ -74,6 +86,24 @@ void result_separation_cell(struct writer *w, const struct pound_study *study,
 	writer_number(w, "displacement_right_m", needs->displacement[1]);
 	writer_number(w, "correlation", needs->correlation);
 	write_rules(w, needs);
+}
+
+/* Test     unit_separation_result: the_result_is_what_brute_force_counts, each_gap_of_a_row_is_that_of_its_pair */
+void result_separation_cell(struct writer *w, const struct pound_study *study,
+                            const struct pound_scene *scene, const struct pound_result *result, int cell)
+{
+	if (!study->scene.n_buildings) {
+		write_needs(w, study, result, cell, 0);
+		return;
+	}
+	writer_array(w, "contacts", WRITER_LINES);
+	for (int k = 0; k < pound_study_gaps(study); k++) {
+		writer_object(w, NULL, WRITER_LINES);
+		write_place(w, scene, k);
+		write_needs(w, study, result, cell, k);
+		writer_end(w);
+	}
+	writer_end(w);
 }
 
 static void write_curve(struct writer *w, const struct pound_study *study,
@@ -118,6 +148,8 @@ void result_separation_fragility(struct writer *w, const struct pound_study *stu
 	for (int k = 0; k < separation->n_sets; k++) {
 		const struct pound_stripe_set *set = &separation->sets[k];
 		writer_object(w, NULL, WRITER_LINES);
+		if (study->scene.n_buildings)
+			writer_whole(w, "contact", set->contact);
 		writer_text(w, "intensity", study->separation.intensity);
 		writer_object(w, "sweep", WRITER_LINE);
 		for (int s = 0; s < study->n_sweeps; s++)

@@ -7,7 +7,7 @@
 
 /* Members of the object that is open in w: those of a cell, and behind all cells the fragility curves. */
 void result_separation_cell(struct writer *w, const struct pound_study *study,
-                            const struct pound_result *result, int cell);
+                            const struct pound_scene *scene, const struct pound_result *result, int cell);
 void result_separation_fragility(struct writer *w, const struct pound_study *study,
                                  const struct pound_result *result);
 

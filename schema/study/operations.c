@@ -402,9 +402,12 @@ static struct marches count_row(const struct pound_study *study, double items, s
 	struct storeys all[POUND_BUILDINGS_MAX] = {{0}};
 	const int n = study->scene.n_buildings;
 	const double samples = means_samples(study);
-	const double pounded = study->scene.contact.present ? items * distinct(study, ALL) : 0;
+	const double together = items * distinct(study, ALL),
+	             watched = pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR ? together : 0,
+	             acting = study->scene.contact.present ? together : 0, pounded = acting + watched;
 	buildings_of(study, all);
-	const struct marches m = count_chain(study, pounded, all, n, c);
+	const struct marches m = count_chain(study, acting, all, n, c);
+	c->of[NEARBY] += watched * m.steps * m.wide;
 	c->of[BEGIN] += items * distinct(study, MOTION);
 	c->of[GROUND] += items * distinct(study, MOTION) * samples;
 	for (int b = 0; b < n; b++) {

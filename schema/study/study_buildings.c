@@ -393,18 +393,9 @@ static void check_places(const struct pound_study *study, struct problems *probl
 		check_place(study, &study->spectrum.place, "/spectrum/place", problems);
 }
 
-/* What is computed of rows; the rest is refused, as nothing is computed by another model than the study's. */
-static void check_kind(const struct pound_study *study, struct problems *problems)
+/* What solvers compute of rows; the rest is refused, as nothing is computed by another one than the study's. */
+static void check_solvers(const struct pound_study *study, struct problems *problems)
 {
-	static const bool kinds[] = {[POUND_KIND_RESPONSE] = true,
-	                             [POUND_KIND_SENSITIVITY] = true,
-	                             [POUND_KIND_CONVERGENCE] = true,
-	                             [POUND_KIND_FLOOR_SPECTRUM] = true,
-	                             [POUND_KIND_SEPARATION] = false};
-	if (!kinds[study->kind])
-		problems_add(problems, "/scene/buildings",
-		             "kind \"%s\" cannot be computed for buildings, only for oscillators",
-		             study_kind_name(study->kind));
 	for (int row = 0; row < POUND_SOLVERS && !problems_at(problems, "/solver"); row++)
 		if (study_check_solves(study, row) && !pound_row_takes_solver(study, row))
 			problems_add(problems, "/solver/method",
@@ -412,11 +403,36 @@ static void check_kind(const struct pound_study *study, struct problems *problem
 			             pound_solver_name(row));
 }
 
+/* Outputs of each contact need the same contacts in every cell. */
+static void check_gaps(const struct pound_study *study, struct problems *problems)
+{
+	const bool separation = study->kind == POUND_KIND_SEPARATION;
+	bool asks = separation;
+	for (int o = 0; o < study->n_outputs; o++)
+		asks |= pound_output_has_contacts(study->outputs[o], &study->scene);
+	for (int b = 0; asks && b < study->scene.n_buildings && study->scene.n_contacts == 0; b++)
+		if (storeys_sweep(study, b) && !problems_at(problems, "/scene/contacts")) {
+			problems_add(problems, "/scene/contacts",
+			             "must list the contacts, as each has numbers of its own and a sweep varies the "
+			             "number of storeys");
+			break;
+		}
+	if (separation && pound_row_contacts(&study->scene) == 0 && !problems_at(problems, "/scene/contact"))
+		problems_add(problems, study->scene.contact.present ? "/scene/buildings" : "/scene/contact",
+		             "kind \"%s\" needs a contact between buildings, as gaps are where contacts are",
+		             study_kind_name(study->kind));
+	if (separation && pound_row_contacts(&study->scene) > POUND_GAPS_OF_ROW_MAX &&
+	    !problems_at(problems, "/scene/contacts"))
+		problems_add(problems, "/scene/contacts",
+		             "kind \"%s\" takes at most %d contacts, this row has %d: list those that are wanted",
+		             study_kind_name(study->kind), POUND_GAPS_OF_ROW_MAX, pound_row_contacts(&study->scene));
+}
+
 /* Every place has outputs of its own; those of a study without places are all storeys of the left building. */
 static void check_outputs_number(const struct pound_study *study, struct problems *problems)
 {
 	const int places = study->scene.n_places ? study->scene.n_places : study_storeys_least(study, 0);
-	int n = 0;
+	int n = study->kind == POUND_KIND_SEPARATION ? 3 * pound_row_contacts(&study->scene) : 0;
 	for (int o = 0; o < study->n_outputs; o++)
 		n += pound_output_has_contacts(study->outputs[o], &study->scene) ? pound_row_contacts(&study->scene)
 		     : pound_output_has_places(study->outputs[o], &study->scene) ? places
@@ -441,12 +457,14 @@ void study_buildings_check(const struct pound_study *study, struct problems *pro
 	if (problems_at(problems, "/scene/buildings") || problems_over(problems, "/scene/buildings"))
 		return;
 	if (scene->n_buildings)
-		check_kind(study, problems);
+		check_solvers(study, problems);
 	for (int b = 0; b < scene->n_buildings; b++)
 		check_arrays(study, b, problems);
 	if (!problems_over(problems, "/scene/contacts") && scene->n_buildings)
 		check_contacts(study, problems);
 	check_places(study, problems);
+	if (scene->n_buildings && !problems_over(problems, "/scene/contacts"))
+		check_gaps(study, problems);
 	if (scene->n_buildings && !problems_at(problems, "/outputs") && !problems_at(problems, "/places"))
 		check_outputs_number(study, problems);
 }

@@ -143,8 +143,9 @@ void study_separation_check(const struct pound_study *study, struct problems *pr
  */
 void study_separation_lay(struct pound_study *study)
 {
-	static const char *const own[] = {"gap_needed_m", "peak_displacement_free_m",
-	                                  "peak_displacement_free_right_m"};
+	static const char *const own[][3] = {
+	    {"gap_needed_m", "peak_displacement_free_m", "peak_displacement_free_right_m"},
+	    {"gap_needed_m", "level_displacement_free_left_m", "level_displacement_free_right_m"}};
 	struct pound_separation *s = &study->separation;
 	int rows[POUND_OUTPUTS_MAX], n = 0;
 	if (study->kind != POUND_KIND_SEPARATION)
@@ -154,8 +155,8 @@ void study_separation_lay(struct pound_study *study)
 		s->probabilities = probabilities_absent;
 		s->n_probabilities = sizeof probabilities_absent / sizeof probabilities_absent[0];
 	}
-	for (size_t k = 0; k < sizeof own / sizeof own[0]; k++) {
-		const int row = fields_choice(pound_output_name, own[k]);
+	for (size_t k = 0; k < sizeof own[0] / sizeof own[0][0]; k++) {
+		const int row = fields_choice(pound_output_name, own[study->scene.n_buildings > 0][k]);
 		if (study_check_applies(study, row))
 			rows[n++] = row;
 	}
@@ -169,6 +170,7 @@ void study_separation_lay(struct pound_study *study)
 	}
 	memcpy(study->outputs, rows, sizeof *rows * (size_t)n);
 	study->n_outputs = n;
+	s->n_own *= pound_study_gaps(study); // as study_places_lay puts each there once for each contact
 }
 
 struct pound_study study_separation_like(const struct pound_study *study)
@@ -189,5 +191,6 @@ double study_separation_bytes(const struct pound_study *study)
 	const double runs = pound_study_sampled(study) ? 0 : study->scene.excitation.signals;
 	if (study->kind != POUND_KIND_SEPARATION)
 		return 0;
-	return study_cells(study) * (ROW_BYTES * (2.0 * gaps + s->n_probabilities) + NUMBER_BYTES * runs);
+	return study_cells(study) * pound_study_gaps(study) *
+	       (ROW_BYTES * (2.0 * gaps + s->n_probabilities) + NUMBER_BYTES * runs);
 }

@@ -69,6 +69,13 @@ static const char *law_idle(const struct pound_study *study, const struct field 
 	return NULL;
 }
 
+/* Whether a field says how contacts act, not where they are. */
+static bool of_contact(const char *pattern)
+{
+	return strncmp(pattern, "/scene/contact/", 15) == 0 ||
+	       (strncmp(pattern, "/scene/contacts/", 16) == 0 && !strstr(pattern, "/levels/"));
+}
+
 /* Why varying a field of the scene would change nothing.
  *
  * Given    study       -   read, with problems in its inputs and sweeps or without
@@ -91,8 +98,7 @@ const char *study_idle(const struct pound_study *study, const struct field *fiel
 		return "has no effect: the records are not scaled";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && !scene->contact.present)
 		return "has no effect: there is no contact in this scene";
-	if (strncmp(field->pattern, "/scene/contact/", 15) == 0 && study->kind == POUND_KIND_SEPARATION &&
-	    study->n_outputs == 0)
+	if (of_contact(field->pattern) && study->kind == POUND_KIND_SEPARATION && study->n_outputs == 0)
 		return "has no effect: without \"outputs\" a study of separation runs nothing with contact";
 	if (strncmp(field->pattern, "/scene/contact/", 15) == 0)
 		return study_contact_idle(study, fields_name(field));

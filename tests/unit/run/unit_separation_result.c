@@ -247,9 +247,152 @@ static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 	reading_close(r);
 }
 
+/* One-story buildings are oscillators, from both runs of them together without contact; a wall stands on the right of the last. */
+static void each_gap_of_a_row_is_that_of_its_pair(void **state)
+{
+	static const char *const laws[] = {"linear", "elastoplastic"};
+	static const char *const members[] = {"gap_needed/mean_m",    "gap_needed/standard_deviation_m",
+	                                      "gap_needed/largest_m", "displacement_left_m",
+	                                      "displacement_right_m", "correlation",
+	                                      "rules/0/gap_m",        "rules/1/gap_m",
+	                                      "rules/2/gap_m",        "gaps/1/gap_m",
+	                                      "gaps/1/low_m",         "pounding/1/probability",
+	                                      "pounding/1/high",      "rules/2/probability"};
+	static const char rest[] =
+	    "\"excitation\": {\"signals\": 40}}, \"sweep\": [{\"path\": "
+	    "\"/excitation/peak_m_s2\", \"values\": [0.5, 1]}], \"separation\": {\"gaps_m\": [0, "
+	    "0.013, 0.03], \"intensity\": \"/excitation/peak_m_s2\"}}";
+	static const char *const bodies[] = {"\"mass_kg\": 3, \"frequency_hz\": 1",
+	                                     "\"mass_kg\": 2, \"frequency_hz\": 1.7, \"damping_ratio\": 0.02",
+	                                     "\"rigid_wall\": true"};
+	double most = 0;
+	char document[2048];
+	(void)state;
+	for (int law = 0; law < 2; law++) {
+		snprintf(document, sizeof document,
+		         "{\"kind\": \"separation\", \"scene\": {\"law\": {\"type\": \"%s\"}, \"buildings\": "
+		         "[{\"storeys\": 1, %s}, {\"storeys\": 1, %s}, {%s}], %s",
+		         laws[law], bodies[0], bodies[1], bodies[2], rest);
+		struct reading *row = results_of_study(document);
+		check_near(reading_number(row, "/work/pounding_runs/run"), 0, 0);
+		check_near(reading_number(row, "/work/free_pair_runs/run"), 80, 0);
+		assert_int_equal(reading_count(row, "/fragility"), 2);
+		for (int contact = 0; contact < 2; contact++) {
+			snprintf(document, sizeof document,
+			         "{\"kind\": \"separation\", \"scene\": {\"law\": {\"type\": \"%s\"}, \"oscillators\": "
+			         "[{%s}, {%s}], %s",
+			         laws[law], bodies[contact], bodies[contact + 1], rest);
+			struct reading *pair = results_of_study(document);
+			check_near(reading_number(row, "/cells/0/contacts/%d/left_building", contact), contact, 0);
+			for (int cell = 0; cell < 2; cell++)
+				for (size_t k = 0; k < sizeof members / sizeof members[0]; k++) {
+					const double of = reading_number(row, "/cells/%d/contacts/%d/%s", cell, contact,
+					                                 members[k]),
+					             wanted = reading_number(pair, "/cells/%d/%s", cell, members[k]);
+					check_near(of, wanted, 1e-12 * fabs(wanted));
+					most = wanted ? fmax(most, fabs(of / wanted - 1)) : most;
+				}
+			for (int k = 0; k < 40; k++)
+				check_near(reading_number(row, "/cells/1/contacts/%d/gap_needed/signals_m/%d", contact, k),
+				           reading_number(pair, "/cells/1/gap_needed/signals_m/%d", k), 1e-13);
+			check_near(reading_number(row, "/fragility/%d/contact", contact), contact, 0);
+			if (!isnan(reading_number(pair, "/fragility/0/curves/1/median")))
+				check_near(reading_number(row, "/fragility/%d/curves/1/median", contact),
+				           reading_number(pair, "/fragility/0/curves/1/median"), 1e-9);
+			reading_close(pair);
+		}
+		reading_close(row);
+	}
+	printf("# gaps of one-story rows as those of pairs to %.1e\n", most);
+}
+
+/* Brute force: with one contact alone a signal pounds exactly where it needs more than the gap. */
+static void each_gap_of_a_row_is_what_brute_force_counts(void **state)
+{
+	static const char *const laws[] = {"linear", "elastoplastic"};
+	static const char *const contacts[] = {"{\"levels\": [1, 0.8]}", "{\"levels\": [3, 2]}",
+	                                       "{\"left_building\": 1, \"levels\": [2, 2]}"};
+	static const double gaps[] = {0.01, 0.02, 0.03, 0.04};
+	static const char buildings[] =
+	    "\"buildings\": [{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 2}, {\"storeys\": 2, "
+	    "\"mass_kg\": "
+	    "2e5, \"frequency_hz\": 1}, {\"rigid_wall\": true}], \"excitation\": {\"signals\": 25}";
+	int between = 0;
+	char document[1024];
+	(void)state;
+	for (int law = 0; law < 2; law++) {
+		snprintf(
+		    document, sizeof document,
+		    "{\"kind\": \"separation\", \"scene\": {\"law\": {\"type\": \"%s\"}, %s, \"contacts\": [%s, %s, "
+		    "%s]}, \"separation\": {\"gaps_m\": [0.01, 0.02, 0.03, 0.04]}}",
+		    laws[law], buildings, contacts[0], contacts[1], contacts[2]);
+		struct reading *r = results_of_study(document);
+		for (int contact = 0; contact < 3; contact++)
+			for (int g = 0; g < 4; g++) {
+				const double p =
+				    reading_number(r, "/cells/0/contacts/%d/pounding/%d/probability", contact, g);
+				snprintf(document, sizeof document,
+				         "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"%s\"}, %s, "
+				         "\"contacts\": [%s], "
+				         "\"contact\": {\"gap_m\": %.17g}}, \"outputs\": [\"pounding_probability\"]}",
+				         laws[law], buildings, contacts[contact], gaps[g]);
+				struct reading *brute = results_of_study(document);
+				check_near(reading_number(brute, "/outputs/pounding_probability"), p, 0);
+				reading_close(brute);
+				between += p > 0 && p < 1;
+			}
+		reading_close(r);
+	}
+	assert_true(between > 5);
+}
+
+/* A largest displacement at a level is that of its floor, which other marches find; pounding at listed gaps in the same study. */
+static void levels_of_a_row_are_its_floors(void **state)
+{
+	static const char scene[] = "\"buildings\": [{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 2}, "
+	                            "{\"storeys\": 2, \"mass_kg\": 2e5, \"frequency_hz\": 1}], \"excitation\": "
+	                            "{\"signals\": 10}";
+	static const char *const outputs[] = {"pounding_probability", "peak_impulse_n_s"};
+	char document[1024];
+	(void)state;
+	snprintf(document, sizeof document,
+	         "{\"kind\": \"separation\", \"scene\": {%s}, \"outputs\": [\"pounding_probability\", "
+	         "\"peak_impulse_n_s\"], \"sweep\": [{\"path\": \"/contact/gap_m\", \"values\": [0.01, 0.02]}]}",
+	         scene);
+	struct reading *r = results_of_study(document);
+	for (int cell = 0; cell < 2; cell++) {
+		snprintf(
+		    document, sizeof document,
+		    "{\"kind\": \"response\", \"scene\": {%s, \"contact\": {\"gap_m\": 0.0%d}}, \"outputs\": "
+		    "[\"peak_displacement_free_m\", \"pounding_probability\", \"peak_impulse_n_s\"], \"places\": "
+		    "[{\"building\": 0, \"storey\": 1}, {\"building\": 0, \"storey\": 2}, {\"building\": 1, "
+		    "\"storey\": 1}, {\"building\": 1, \"storey\": 2}]}",
+		    scene, cell + 1);
+		struct reading *response = results_of_study(document);
+		for (int k = 0; k < 4; k++) {
+			const double floor = reading_number(
+			    response, "/outputs/peak_displacement_free_m.building_%d.storey_%d", k / 2, k % 2 + 1);
+			check_near(reading_number(r, "/cells/%d/contacts/%d/displacement_%s_m", cell, k % 2,
+			                          k / 2 ? "right" : "left"),
+			           floor, 1e-11 * floor);
+		}
+		for (int k = 0; k < 2; k++)
+			check_near(reading_number(r, "/cells/%d/outputs/%s", cell, outputs[k]),
+			           reading_number(response, "/outputs/%s", outputs[k]),
+			           1e-13 * reading_number(response, "/outputs/%s", outputs[k]));
+		reading_close(response);
+	}
+	check_near(reading_number(r, "/cells/0/contacts/1/gap_needed/mean_m"),
+	           reading_number(r, "/cells/1/contacts/1/gap_needed/mean_m"), 0);
+	reading_close(r);
+}
+
 CHECK_MAIN(cmocka_unit_test(the_result_is_what_brute_force_counts),
            cmocka_unit_test(outputs_with_pounding_are_those_of_a_response),
            cmocka_unit_test(a_step_of_acceleration_needs_its_closed_form),
            cmocka_unit_test(a_suite_of_sines_needs_its_closed_forms),
            cmocka_unit_test(with_inputs_the_runs_are_those_of_the_design),
-           cmocka_unit_test(a_swept_intensity_has_fragility_curves_and_rates))
+           cmocka_unit_test(a_swept_intensity_has_fragility_curves_and_rates),
+           cmocka_unit_test(each_gap_of_a_row_is_that_of_its_pair),
+           cmocka_unit_test(each_gap_of_a_row_is_what_brute_force_counts),
+           cmocka_unit_test(levels_of_a_row_are_its_floors))

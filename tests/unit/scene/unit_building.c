@@ -94,6 +94,26 @@ static void damping_is_that_of_its_form(void **state)
 	           1e-13);
 }
 
+/* Every form but that of the stories has the document's ratio in the first mode. */
+static void the_first_mode_has_the_damping_of_its_form(void **state)
+{
+	(void)state;
+	for (int row = 0; pound_damping_name(row); row++)
+		for (int n = 1; n <= 8; n += 7) {
+			struct pound_building building = equal_storeys(n, row);
+			double w, xi;
+			pound_building_first_mode(&building, &w, &xi);
+			check_near(w, closed(n, 1), 1e-13 * closed(n, n));
+			if (strcmp(pound_damping_name(row), "storey") == 0) {
+				// equal stories: C = c/k K, so that xi = w c/(2 k), c = 2 xi sqrt(k m)
+				check_near(xi, w * 0.05 / sqrt(3e8 / 2e5), 1e-12);
+				continue;
+			}
+			check_near(xi, 0.05, 1e-13);
+		}
+}
+
 CHECK_MAIN(cmocka_unit_test(equal_storeys_have_the_frequencies_of_the_closed_form),
            cmocka_unit_test(a_profile_is_scaled_to_the_first_frequency),
-           cmocka_unit_test(damping_is_that_of_its_form))
+           cmocka_unit_test(damping_is_that_of_its_form),
+           cmocka_unit_test(the_first_mode_has_the_damping_of_its_form))
