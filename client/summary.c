@@ -156,6 +156,15 @@ static void print_estimate(const struct reading *result, const char *input, cons
 		printf("  %s %6.3f %7s", index, value, "");
 }
 
+/* Rows without which an output's intervals are too narrow, as its note ends; NAN: those are enough. */
+static double rows_needed(const struct reading *result, const char *output)
+{
+	const char *note = reading_text(result, "%s/note", output),
+	           *few = note ? strstr(note, "few rows hold") : NULL;
+	const char *colon = few ? strchr(few, ':') : NULL;
+	return colon ? strtod(colon + 1, NULL) : NAN;
+}
+
 static void print_output(const struct summary *summary, int output)
 {
 	const struct reading *result = summary->result;
@@ -178,12 +187,10 @@ static void print_output(const struct summary *summary, int output)
 	double noise = reading_number(result, "%s/noise_share", at);
 	if (isfinite(noise))
 		printf(", noise %.2g %%", 100 * noise);
+	double needed = rows_needed(result, at);
+	if (isfinite(needed))
+		printf(", needs %.0f rows", needed);
 	putchar('\n');
-	// what makes intervals too narrow is said last
-	const char *note = reading_text(result, "%s/note", at),
-	           *few = note ? strstr(note, "few rows hold") : NULL;
-	if (few)
-		table_prose(4, few);
 	for (int j = 0; j < summary->n_inputs; j++) {
 		int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
@@ -214,8 +221,15 @@ static void print_outputs(const struct summary *summary)
 	printf("\nShare of an output's variance due to an input alone (S1), to an input with its\n"
 	       "interactions (ST), to the randomness of %s (noise); +-: 95 %% interval.\n",
 	       own ? "replicates" : "motions");
-	for (int o = 0; o < summary->n_outputs; o++)
+	bool narrow = false;
+	for (int o = 0; o < summary->n_outputs; o++) {
+		char at[PATH_SIZE];
+		snprintf(at, sizeof at, "/cells/0/outputs/%d", o);
 		print_output(summary, o);
+		narrow |= isfinite(rows_needed(summary->result, at));
+	}
+	if (narrow)
+		puts("Intervals of what needs more rows are too narrow: few rows hold the variance.");
 }
 
 /* ---- many of both ---- */

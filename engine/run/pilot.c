@@ -219,9 +219,9 @@ enum pound_status pound_pilot_run(struct pound_run *run, struct pound_run *pilot
 		return POUND_STOPPED;
 	choose(tried, split);
 	pound_study_split(&given, split->signals, &run->study);
-	// a look takes time: none before a quarter of the rows foreseen, as what polynomials leave of the variance falls with them
+	// a look takes time: none before an eighth of the rows foreseen, as what polynomials leave of the variance falls with them
 	if (given.design.until.half_width > 0)
-		run->study.design.rows = (int)fmax(given.design.rows, split->decided_by.rows / 4);
+		run->study.design.rows = (int)fmax(given.design.rows, split->decided_by.rows / 8);
 	split->rows = run->study.design.rows;
 	return POUND_OK;
 }
