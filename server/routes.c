@@ -367,14 +367,21 @@ static void tabulate(struct reply *reply, const struct reply *json, const char *
 	*reply = problem(API_CONFLICT, detail);
 }
 
-/* A result that is not there yet as that of the rows so far, if that is asked for, and how many these are. */
+/* A result that is not there yet, or never will be, as that of the rows so far, if that is asked for and there is one, and how
+ * many these are. */
 static struct reply or_so_far(struct request *request, struct reply json, int *rows)
 {
 	*rows = 0;
-	if (json.status != 404 || json.retry_after <= 0 || strcmp(http_argument(request, "partial"), "true") != 0)
+	const bool ended = json.status == 409, waits = json.status == 404 && json.retry_after > 0;
+	if ((!ended && !waits) || strcmp(http_argument(request, "partial"), "true") != 0)
 		return json;
+	struct reply reply = so_far(request, json.retry_after, rows);
+	if (ended && reply.status == 404) {
+		free(reply.body);
+		return json;
+	}
 	free(json.body);
-	return so_far(request, json.retry_after, rows);
+	return reply;
 }
 
 /* The result as JSON. */

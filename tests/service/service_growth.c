@@ -188,6 +188,37 @@ static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **st
 	free(study);
 }
 
+static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
+{
+	// a minute of one core
+	enum { SIGNALS_MANY = 500 };
+	struct service *service = *state;
+	char *study = service_study(SERVICE_ROWS, SIGNALS_MANY, SEED), id[17], path[64];
+	service_submit(service, study, id);
+	struct answer answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	while (answer.status == 404) {
+		answer_free(&answer);
+		answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
+	}
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
+	answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results", id, 409);
+	answer_free(&answer);
+	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
+	struct reading *result = answer_read(&answer);
+	const double rows = reading_number(result, "/partial/rows");
+	assert_true(rows > 0 && rows < SERVICE_ROWS);
+	assert_true(reading_number(result, "/cells/0/runs") == rows * 5 * SIGNALS_MANY);
+	check_report("a study cancelled after %.0f of %d rows: their results are kept", rows, SERVICE_ROWS);
+	reading_close(result);
+	answer_free(&answer);
+	free(study);
+}
+
 static void results_so_far_come_at_once_when_asked_for_again(void **state)
 {
 	(void)state;
@@ -251,5 +282,6 @@ CHECK_MAIN(
     SERVED(the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took),
     cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
     SERVED(a_running_study_answers_with_the_indices_of_its_whole_rows),
+    SERVED(a_cancelled_study_keeps_the_results_of_its_whole_rows),
     cmocka_unit_test(results_so_far_come_at_once_when_asked_for_again),
     SERVED(a_study_without_a_row_has_no_results_yet))
