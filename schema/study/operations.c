@@ -556,10 +556,11 @@ void operations_count(const struct pound_study *study, struct counts *c)
 	// what is run again for histories: of pairs as it was fitted, of rows up to that time
 	const double seconds = means_duration(study), history = fmin(study->convergence.history, seconds);
 	const double repeated = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
-	// the floors of chains are followed by marches of their own
+	// the floors of chains that meet are followed by marches of their own
+	const bool followed =
+	    study->spectrum.n && study->scene.contact.present && operations_chained(study, &study->solver);
 	if (study->kind != POUND_KIND_CONVERGENCE)
-		m = count_runs(study, &study->solver,
-		               items * (study->spectrum.n && operations_chained(study, &study->solver) ? 2 : 1), c);
+		m = count_runs(study, &study->solver, items * (followed ? 2 : 1), c);
 	else
 		for (int j = 0; j < pound_convergence_trials(study); j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);
