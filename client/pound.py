@@ -3,7 +3,7 @@
     import pound
     result = pound.run(study)                        # the result as a dict; url= for a server
     Si = pound.salib(result, "impulse", cell=0)      # S1, S1_conf, ST, ...: arrays of NumPy
-    rows = pound.table(result)                       # one dict per cell, output and input: pandas.DataFrame(rows)
+    rows = pound.table(result)                       # one dict per cell, output and input, or gap: pandas.DataFrame(rows)
     X = pound.design(model)                          # the rows to run a model of your own on
     Si = pound.salib(pound.indices(model, Y), "y")   # Y: what it gave for them
 
@@ -155,12 +155,20 @@ def indices(model, outputs, names=None, order="pound"):
 
 
 def table(result):
-    """One dict for each cell, output and input of a sensitivity result, with every column of indices."""
+    """One dict for each cell, output and input of a result with indices, with every column of them.  Of a separation study
+    without inputs: one for each cell, contact of a row and gap, with the probability of pounding."""
     rows = []
-    for number, cell in enumerate(result["cells"]):
-        for output in cell["outputs"]:
-            for row in output["inputs"]:
-                rows.append({"cell": number, **cell["sweep"], "output": output["name"], **row})
+    for number, cell in enumerate(result.get("cells", [{}])):
+        where = {"cell": number, **cell.get("sweep", {})}
+        if isinstance(cell.get("outputs"), list):
+            for output in cell["outputs"]:
+                rows += [{**where, "output": output["name"], **row} for row in output["inputs"]]
+            continue
+        for needs in cell.get("contacts", [cell]):
+            if "pounding" not in needs:
+                raise Error(f"a result of kind \"{result['kind']}\" has no table of indices or gaps")
+            contact = {"contact": needs["contact"]} if "contact" in needs else {}
+            rows += [{**where, **contact, **row} for row in needs["pounding"]]
     return rows
 
 

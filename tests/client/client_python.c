@@ -98,6 +98,42 @@ static void errors_of_command_and_server_name_every_fault(void **state)
 	program_free(&outcome);
 }
 
+/* Of indices, of gaps of oscillators and of each contact of a row; other kinds are refused by name. */
+static void a_table_has_the_rows_of_its_kind(void **state)
+{
+	(void)state;
+	prepare();
+	struct program_outcome outcome = python(
+	    "import pound\n"
+	    "pair = {'oscillators': [{'frequency_hz': 1}, {'frequency_hz': 1.7}], 'excitation': {'signals': 5}}\n"
+	    "row = {'buildings': [{'storeys': 2, 'mass_kg': 1e5, 'frequency_hz': 1}, {'storeys': 2, 'mass_kg': "
+	    "1e5, "
+	    "'frequency_hz': 2}], 'excitation': {'signals': 5}}\n"
+	    "study = {'kind': 'separation', 'scene': pair, 'separation': {'gaps_m': [0, 0.01, 1]}, 'sweep': "
+	    "[{'path': "
+	    "'/excitation/peak_m_s2', 'values': [1, 2]}]}\n"
+	    "result = pound.run(study)\n"
+	    "rows = pound.table(result)\n"
+	    "assert [r['cell'] for r in rows] == [0, 0, 0, 1, 1, 1]\n"
+	    "assert rows[3]['/excitation/peak_m_s2'] == 2 and rows[3]['probability'] == 1\n"
+	    "assert [(r['gap_m'], r['probability']) for r in rows[:3]] == "
+	    "[(p['gap_m'], p['probability']) for p in result['cells'][0]['pounding']]\n"
+	    "result = pound.run({**study, 'scene': row})\n"
+	    "rows = pound.table(result)\n"
+	    "assert [r['contact'] for r in rows] == [0, 0, 0, 1, 1, 1] * 2\n"
+	    "assert rows[4]['probability'] == result['cells'][0]['contacts'][1]['pounding'][1]['probability']\n"
+	    "inputs = [{'path': '/oscillators/0/frequency_hz', 'distribution': {'type': 'uniform', 'min': 1, "
+	    "'max': "
+	    "2}}]\n"
+	    "rows = pound.table(pound.run({**study, 'inputs': inputs, 'design': {'rows': 20}}))\n"
+	    "assert len(rows) == 6 and 'S1' in rows[0] and rows[0]['output'] == 'gap_needed_m'\n"
+	    "try: pound.table(pound.run({'kind': 'response', 'scene': pair}))\n"
+	    "except pound.Error as error: assert 'kind \"response\" has no table' in str(error), str(error)\n"
+	    "else: assert False\n");
+	program_expect(&outcome, 0);
+	program_free(&outcome);
+}
+
 static void a_failed_run_and_a_variance_pass_to_the_indices_as_they_are(void **state)
 {
 	(void)state;
@@ -131,4 +167,5 @@ static void a_failed_run_and_a_variance_pass_to_the_indices_as_they_are(void **s
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, program_setup, service_teardown)
 CHECK_MAIN(TEST(the_page_is_a_notebook_that_runs), TEST(errors_of_command_and_server_name_every_fault),
+           TEST(a_table_has_the_rows_of_its_kind),
            TEST(a_failed_run_and_a_variance_pass_to_the_indices_as_they_are))
