@@ -236,7 +236,11 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && (i == 0 || right)};
+		// who asks for gaps needed alone has all from both bodies together, where these are marched
+		const struct pound_law *law = pound_scene_law(scene, i);
+		bool together =
+		    !pound_study_pounds(campaign->study) && !pound_law_linear(law->type) && !searched(law);
+		ask->bodies[i] = (struct body_ask){.march = -1, .wanted = moves && !together && (i == 0 || right)};
 	}
 }
 
@@ -311,6 +315,8 @@ static bool follow_free_pair(struct pound_request *request, int a)
 	                          .time_step = m->time_step};
 	if (pound_pairs_add(&request->pairs, &task, request->free_pair[a]))
 		return true;
+	for (int i = 0; i < POUND_OSCILLATORS; i++)
+		task.bodies[i].followed |= !ask->bodies[i].finished && !ask->scene.oscillators[i].rigid_wall;
 	// a body beside a wall without contact is not the same run as that body alone, which nothing observes
 	const int known = request->march_keys.n;
 	task.observer = &request->peaks[known].observer;

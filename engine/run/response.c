@@ -56,7 +56,11 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		bool wall = scene->oscillators[i].rigid_wall;
 		double most = wall ? 0 : !alone ? with->displacement_max[i] : free ? free->displacement_max[0] : 0;
 		max[i] = ldexp(most, e);
-		max_free[i] = wall ? 0 : free ? ldexp(free->displacement_max[0], e) : NAN;
+		const struct pound_task_result *pair = known->free_pair;
+		max_free[i] = wall   ? 0
+		              : free ? ldexp(free->displacement_max[0], e)
+		              : pair ? ldexp(pair->displacement_max[i], e)
+		                     : NAN;
 		force[i] = ldexp(scene->oscillators[i].mass * pound_law_envelope(&backbone, most), e);
 		double given = pound_scene_law(scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);

@@ -387,6 +387,39 @@ static void levels_of_a_row_are_its_floors(void **state)
 	reading_close(r);
 }
 
+/* Bodies that yield are run once, both together: their largest displacements are those of each alone. */
+static void bodies_that_yield_are_run_once(void **state)
+{
+	static const char *const laws[] = {
+	    "{\"type\": \"elastoplastic\", \"yield_displacement_m\": 0.01}",
+	    "{\"type\": \"elastoplastic\", \"target_demand\": 2, \"corrections\": 0}"};
+	static const char *const names[] = {"displacement_left_m", "displacement_right_m"},
+	                         *const outputs[] = {"peak_displacement_free_m",
+	                                             "peak_displacement_free_right_m"};
+	char scene[512], document[1024];
+	(void)state;
+	for (int law = 0; law < 2; law++) {
+		snprintf(
+		    scene, sizeof scene,
+		    "\"scene\": {\"law\": %s, \"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 1.7}], "
+		    "\"contact\": null, \"excitation\": {\"signals\": 30}}",
+		    laws[law]);
+		snprintf(document, sizeof document, "{\"kind\": \"separation\", %s}", scene);
+		struct reading *r = results_of_study(document);
+		snprintf(document, sizeof document, "{\"kind\": \"response\", %s, \"outputs\": [\"%s\", \"%s\"]}",
+		         scene, outputs[0], outputs[1]);
+		struct reading *alone = results_of_study(document);
+		check_near(reading_number(r, "/work/yield_runs/run"), 0, 0);
+		check_near(reading_number(r, "/work/free_pair_runs/run"), 30, 0);
+		for (int k = 0; k < 2; k++) {
+			const double wanted = reading_number(alone, "/outputs/%s", outputs[k]);
+			check_near(reading_number(r, "/cells/0/%s", names[k]), wanted, 1e-12 * wanted);
+		}
+		reading_close(r);
+		reading_close(alone);
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(the_result_is_what_brute_force_counts),
            cmocka_unit_test(outputs_with_pounding_are_those_of_a_response),
            cmocka_unit_test(a_step_of_acceleration_needs_its_closed_form),
@@ -395,4 +428,4 @@ CHECK_MAIN(cmocka_unit_test(the_result_is_what_brute_force_counts),
            cmocka_unit_test(a_swept_intensity_has_fragility_curves_and_rates),
            cmocka_unit_test(each_gap_of_a_row_is_that_of_its_pair),
            cmocka_unit_test(each_gap_of_a_row_is_what_brute_force_counts),
-           cmocka_unit_test(levels_of_a_row_are_its_floors))
+           cmocka_unit_test(levels_of_a_row_are_its_floors), cmocka_unit_test(bodies_that_yield_are_run_once))
