@@ -483,6 +483,7 @@ static void notes_look(struct chain *c)
 	f->at[0].d = c->d;
 	f->at[0].v = c->v;
 	c->n_links = 0;
+	links_list(c); // none acts
 	c->edged = c->warp.on = false;
 	c->pace = 1;
 	c->reach = 0;

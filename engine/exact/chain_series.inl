@@ -219,7 +219,7 @@ static void story_settle(struct chain *c, int i, double ground)
 		c->drifts[2].at[i] = 0;
 }
 
-/* Orders 0 and 1 of the step, and its coefficients. */
+/* Orders 0 and 1 of the step, and its coefficients; links_list has listed the links as they are now. */
 static void series_start(struct chain *c)
 {
 	const vd h = vsplat(c->dt), h2 = h * h;
