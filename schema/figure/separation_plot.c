@@ -36,15 +36,15 @@ static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
 /* "contact 2, levels 3 and 2 of buildings 0 and 1, PGA 1 m/s2"; the place goes into the buffer. */
 static const char *place_text(const cJSON *needs, const char *sweep, char text[PLOT_TEXT])
 {
-	const cJSON *levels = plot_member(needs, "levels");
+	const cJSON *levels = plot_member(needs, "levels"), *first = plot_first(levels),
+	            *second = first ? first->next : NULL;
 	const double left = plot_number(needs, "left_building");
 	char number[2][32];
-	if (!levels)
+	if (!cJSON_IsNumber(first) || !cJSON_IsNumber(second))
 		return sweep;
 	snprintf(text, PLOT_TEXT, "contact %.0f, levels %s and %s of buildings %.0f and %.0f%s%.100s",
-	         plot_number(needs, "contact"), draw_number(plot_first(levels)->valuedouble, number[0]),
-	         draw_number(cJSON_GetArrayItem(levels, 1)->valuedouble, number[1]), left, left + 1,
-	         *sweep ? ", " : "", sweep);
+	         plot_number(needs, "contact"), draw_number(first->valuedouble, number[0]),
+	         draw_number(second->valuedouble, number[1]), left, left + 1, *sweep ? ", " : "", sweep);
 	return text;
 }
 
