@@ -1,9 +1,12 @@
 /* cell.c - the sweep values and the failed runs of a cell. */
 #include "client/cell.h"
 
+#include "client/command.h"
 #include "client/table.h"
 
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* A member's name as written in a JSON Pointer: ~ is ~0, / is ~1. */
 static void pointer_token(char *token, size_t size, const char *name)
@@ -20,22 +23,23 @@ static void pointer_token(char *token, size_t size, const char *name)
 void cell_sweep(const struct reading *result, int cell)
 {
 	const char *path;
+	char *line = command_text("%s", "");
 	for (int i = 0; (path = reading_member(result, i, "/cells/%d/sweep", cell)); i++) {
-		fputs(i ? ", " : "\n", stdout);
-		table_say(path);
-		char token[400];
+		char token[400], number[32];
 		pointer_token(token, sizeof token, path);
 		const char *text = reading_text(result, "/cells/%d/sweep/%s", cell, token);
-		fputs(" = ", stdout);
-		if (text)
-			table_say(text);
-		else if (reading_type(result, "/cells/%d/sweep/%s", cell, token) == 'b')
-			fputs(reading_true(result, "/cells/%d/sweep/%s", cell, token) ? "true" : "false", stdout);
-		else
-			printf("%.10g", reading_number(result, "/cells/%d/sweep/%s", cell, token));
+		if (!text && reading_type(result, "/cells/%d/sweep/%s", cell, token) == 'b')
+			text = reading_true(result, "/cells/%d/sweep/%s", cell, token) ? "true" : "false";
+		snprintf(number, sizeof number, "%.10g", reading_number(result, "/cells/%d/sweep/%s", cell, token));
+		char *longer = command_text("%s%s%s = %s", line, i ? ", " : "", path, text ? text : number);
+		free(line);
+		line = longer;
 	}
-	if (reading_count(result, "/cells/%d/sweep", cell))
+	if (*line) {
 		putchar('\n');
+		table_prose(0, line);
+	}
+	free(line);
 }
 
 void cell_failed(const struct reading *result, const char *at)
@@ -48,4 +52,35 @@ void cell_failed(const struct reading *result, const char *at)
 		printf("; %.0f rows of the design are left out", dropped);
 	if (failed > 0.0)
 		putchar('\n');
+}
+
+static char *longer(char *text, const char *more)
+{
+	char *whole = command_text("%s%s", text, more);
+	free(text);
+	return whole;
+}
+
+static char *measures_add(char *text, const struct reading *result, const char *at,
+                          const struct measure measures[])
+{
+	char more[80];
+	for (; measures->member; measures++) {
+		const double value = reading_number(result, "%s/%s", at, measures->member);
+		if (!isfinite(value))
+			continue;
+		snprintf(more, sizeof more, measures->format, measures->times * value);
+		text = longer(text, more);
+	}
+	return text;
+}
+
+char *cell_output(const struct reading *result, const char *at, const struct measure measures[])
+{
+	static const struct measure places[] = {
+	    {"frequency_hz", " at %.4g Hz", 1}, {"building", ", building %.0f", 1}, {"storey", ", story %.0f", 1},
+	    {"contact", ", contact %.0f", 1},   {"mean", ": mean %.4g", 1},         {NULL, NULL, 0}};
+	const char *name = reading_text(result, "%s/name", at);
+	char *text = command_text("%s", name ? name : "?");
+	return measures_add(measures_add(text, result, at, places), result, at, measures);
 }

@@ -21,10 +21,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATH_SIZE = 128 };     /* of the JSON Pointer of a value in a result */
-enum { CHART = 20 };          /* columns of the chart of total indices */
-enum { ESTIMATE_WIDTH = 20 }; /* columns of "-0.123 [-0.12,-0.12]" */
-enum { ESTIMATES_MAX = 32 };  /* of one list */
+enum { PATH_SIZE = 128 };    /* of the JSON Pointer of a value in a result */
+enum { CHART = 20 };         /* columns of the chart of total indices */
+enum { ESTIMATES_MAX = 32 }; /* of one list */
 enum { INDENT = 2 };
 
 /* ---- one estimate ---- */
@@ -63,7 +62,7 @@ static void print_quoted(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
 	                                      "ST from 0 to 1", NULL};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(1, columns);
 	char input[PATH_SIZE], text[80];
 	for (int j = 0; j < reading_count(result, "%s/inputs", output); j++) {
 		snprintf(input, sizeof input, "%s/inputs/%d", output, j);
@@ -144,19 +143,26 @@ static char *row_label(const struct estimates *of, int row)
 	return label;
 }
 
-/* Columns first to end-1 of the estimates. */
-static void print_block(const struct estimates *of, int first, int end)
+/* A table of all estimates of a list, but for names between spaces in `but`. */
+static void print_estimates(const struct reading *result, const char *output, const char *list,
+                            const char *about, const char *but)
 {
-	const char *columns[ESTIMATES_MAX + 2] = {of->about};
-	memcpy(columns + 1, of->names + first, (size_t)(end - first) * sizeof *columns);
-	struct table *table = table_open(columns);
-	for (int row = 0; row < (of->n_rows ? of->n_rows : 1); row++) {
-		char path[PATH_SIZE], text[80], *label = row_label(of, row);
-		row_path(of, row, path);
+	char at[PATH_SIZE];
+	snprintf(at, sizeof at, "%s/%s", output, list);
+	struct estimates of = {.result = result, .at = at, .about = about};
+	estimates_find(&of, but);
+	if (of.n == 0)
+		return;
+	const char *columns[ESTIMATES_MAX + 2] = {of.about};
+	memcpy(columns + 1, of.names, (size_t)of.n * sizeof *columns);
+	struct table *table = table_open(1, columns);
+	for (int row = 0; row < (of.n_rows ? of.n_rows : 1); row++) {
+		char path[PATH_SIZE], text[80], *label = row_label(&of, row);
+		row_path(&of, row, path);
 		table_text(table, *label ? label : "");
 		free(label);
-		for (int k = first; k < end; k++) {
-			interval(text, sizeof text, of->result, path, of->names[k], false);
+		for (int k = 0; k < of.n; k++) {
+			interval(text, sizeof text, result, path, of.names[k], false);
 			table_text(table, *text ? text : NULL);
 		}
 	}
@@ -165,42 +171,7 @@ static void print_block(const struct estimates *of, int first, int end)
 	table_close(table);
 }
 
-/* Tables of all estimates of a list, each of as many columns as there is room for. */
-static void print_estimates(const struct reading *result, const char *output, const char *list,
-                            const char *about, const char *but)
-{
-	char at[PATH_SIZE];
-	int labels = table_width(about);
-	snprintf(at, sizeof at, "%s/%s", output, list);
-	struct estimates of = {.result = result, .at = at, .about = about};
-	estimates_find(&of, but);
-	for (int row = 0; row < of.n_rows; row++) {
-		char *label = row_label(&of, row);
-		labels = table_width(label) > labels ? table_width(label) : labels;
-		free(label);
-	}
-	for (int first = 0, end; first < of.n; first = end) {
-		int width = INDENT + labels;
-		for (end = first; end < of.n; end++) {
-			int name = table_width(of.names[end]);
-			width += 2 + (name > ESTIMATE_WIDTH ? name : ESTIMATE_WIDTH);
-			if (end > first && width > TABLE_WIDTH)
-				break;
-		}
-		print_block(&of, first, end);
-	}
-}
-
 /* ---- what is said about an output ---- */
-
-/* "name 0.1234" after a comma; nothing where there is no value. */
-static void print_measure(const struct reading *result, const char *output, const char *member,
-                          const char *name, const char *before)
-{
-	double value = reading_number(result, "%s/%s", output, member);
-	if (isfinite(value))
-		printf("%s%s %.4g", before, name, value);
-}
 
 static void print_note(const char *note)
 {
@@ -234,20 +205,15 @@ static void print_correlation(const struct reading *result, const char *output)
 
 static void print_output_head(const struct reading *result, const char *output)
 {
+	static const struct measure measures[] = {{"variance", ", variance %.4g", 1},
+	                                          {"noise_share", ", noise share %.4g", 1},
+	                                          {"ratio_bias", ", ratio bias %.4g", 1},
+	                                          {"explained", ", cross-validated R2 of the polynomial %.4g", 1},
+	                                          {NULL, NULL, 0}};
+	char *head = cell_output(result, output, measures);
 	putchar('\n');
-	table_say(reading_text(result, "%s/name", output));
-	print_measure(result, output, "frequency_hz", "at", " ");
-	if (isfinite(reading_number(result, "%s/frequency_hz", output)))
-		fputs(" Hz", stdout);
-	print_measure(result, output, "building", "building", ", ");
-	print_measure(result, output, "storey", "story", ", ");
-	print_measure(result, output, "contact", "contact", ", ");
-	print_measure(result, output, "mean", "mean", ": ");
-	print_measure(result, output, "variance", "variance", ", ");
-	print_measure(result, output, "noise_share", "noise share", ", ");
-	print_measure(result, output, "ratio_bias", "ratio bias", ", ");
-	print_measure(result, output, "explained", "cross-validated R2 of the polynomial", ", ");
-	putchar('\n');
+	table_prose(0, head);
+	free(head);
 	if (reading_text(result, "%s/note", output))
 		print_note(reading_text(result, "%s/note", output));
 	print_correlation(result, output);
@@ -283,14 +249,15 @@ static void print_accuracy(const struct reading *result, const char *output)
 	putchar('\n');
 	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
+	char *changes = isfinite(change)
+	                    ? command_text(", differences %.2g (median) to %.2g: no index moves by over %.2g",
+	                                   reading_number(result, "%s/difference_median", accuracy),
+	                                   reading_number(result, "%s/difference_largest", accuracy), change)
+	                    : command_text("%s", "");
+	char *line = command_text("%.0f runs checked%s", checked, changes);
 	if (checked > 0.0)
-		printf("  %.0f runs checked", checked);
-	if (isfinite(change))
-		printf(", apart by %.2g (median) to %.2g: no index moves by over %.2g",
-		       reading_number(result, "%s/difference_median", accuracy),
-		       reading_number(result, "%s/difference_largest", accuracy), change);
-	if (checked > 0.0)
-		putchar('\n');
+		table_prose(INDENT, line);
+	free(line), free(changes);
 	const char *note = reading_text(result, "%s/note", accuracy);
 	if (note)
 		table_prose(INDENT, note);
@@ -346,7 +313,7 @@ static void print_curves(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {
 	    "input", "from", "to", "lowest", "highest", "mean given it: 0 lowest ... 9 highest", NULL};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(1, columns);
 	for (int j = 0; j < reading_count(result, "%s/conditional_means", output); j++) {
 		char curve[PATH_SIZE], digits[128] = "";
 		double low = NAN, high = NAN;
@@ -434,7 +401,7 @@ static void print_partial(const struct reading *result)
 static void print_stopping(const struct reading *result)
 {
 	static const char *const columns[] = {"rows", "runs", "widest", "index", "input", "output", NULL};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(1, columns);
 	char *sentence = command_text("%.0f rows: %s", reading_number(result, "/stopping/rows"),
 	                              reading_text(result, "/stopping/note"));
 	putchar('\n');

@@ -17,18 +17,19 @@ enum { HTTP_CONFLICT = 409 };
 static const struct {
 	const char *member;
 	enum { TEXT, NUMBER, YES } type; // YES: "yes" where it is true
+	bool more;                       // not in a table of studies, which has a line for each
 } COLUMNS[] = {
-    {"id", TEXT},
-    {"status", TEXT},
-    {"progress", NUMBER},
-    {"runs_done", NUMBER},
-    {"runs_total", NUMBER},
-    {"over_estimate", YES},
-    {"queue_position", NUMBER},
-    {"expected_start", TEXT},
-    {"created", TEXT},
-    {"kind", TEXT},
-    {"name", TEXT},
+    {"id", TEXT, false},
+    {"status", TEXT, false},
+    {"progress", NUMBER, false},
+    {"runs_done", NUMBER, true},
+    {"runs_total", NUMBER, true},
+    {"over_estimate", YES, true},
+    {"queue_position", NUMBER, true},
+    {"expected_start", TEXT, true},
+    {"created", TEXT, false},
+    {"kind", TEXT, true},
+    {"name", TEXT, false},
 };
 
 enum { N_COLUMNS = sizeof COLUMNS / sizeof COLUMNS[0] };
@@ -41,24 +42,30 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 		return OUTCOME_OK;
 	}
 	struct reading *answer = reading_open(reply->body, reply->n_body);
-	bool list = reading_has(answer, "/studies");
+	bool list = reading_has(answer, "/studies"), csv = strcmp(format, "csv") == 0;
 	const char *names[N_COLUMNS + 1] = {0};
+	int columns[N_COLUMNS], n_columns = 0;
 	for (int c = 0; c < N_COLUMNS; c++)
-		names[c] = COLUMNS[c].member;
-	struct table *table = table_open(names);
+		if (csv || !list || !COLUMNS[c].more) {
+			names[n_columns] = COLUMNS[c].member;
+			columns[n_columns++] = c;
+		}
+	struct table *table = table_open(1, names);
 	for (int i = 0; i < (list ? reading_count(answer, "/studies") : 1); i++) {
 		char study[32] = "";
 		if (list)
 			snprintf(study, sizeof study, "/studies/%d", i);
-		for (int c = 0; c < N_COLUMNS; c++)
-			if (COLUMNS[c].type == NUMBER)
-				table_number(table, reading_number(answer, "%s/%s", study, COLUMNS[c].member));
-			else if (COLUMNS[c].type == YES)
-				table_text(table, reading_true(answer, "%s/%s", study, COLUMNS[c].member) ? "yes" : "");
+		for (int k = 0; k < n_columns; k++) {
+			const char *member = COLUMNS[columns[k]].member;
+			if (COLUMNS[columns[k]].type == NUMBER)
+				table_number(table, reading_number(answer, "%s/%s", study, member));
+			else if (COLUMNS[columns[k]].type == YES)
+				table_text(table, reading_true(answer, "%s/%s", study, member) ? "yes" : "");
 			else
-				table_text(table, reading_text(answer, "%s/%s", study, COLUMNS[c].member));
+				table_text(table, reading_text(answer, "%s/%s", study, member));
+		}
 	}
-	if (strcmp(format, "csv") == 0)
+	if (csv)
 		table_print_csv(table);
 	else
 		table_print(table, 0);

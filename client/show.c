@@ -1,4 +1,4 @@
-/* show.c - one function per kind of study, all within 100 columns. */
+/* show.c - one function per kind of study, all within 80 columns. */
 #include "client/show.h"
 
 #include "client/cell.h"
@@ -29,14 +29,14 @@ static void print_outputs(const struct reading *result, const char *at)
 /* The signals and outputs of a cell of two oscillators; `at` is its JSON Pointer in the result. */
 static void print_pairs(const struct reading *result, const char *at)
 {
-	static const char *const columns[] = {"signal",      "oscillator", "u_max_m",   "u_free_m",
-	                                      "force_n",     "yield_m",    "demand",    "demand_free",
-	                                      "impulse_n_s", "contacts",   "contact_s", NULL};
+	static const char *const columns[] = {"signal",      "body",     "u_max_m",   "u_free_m",
+	                                      "force_n",     "yield_m",  "demand",    "demand_free",
+	                                      "impulse_n_s", "contacts", "contact_s", NULL};
 	static const char *const own[] = {
 	    "displacement_max_m", "displacement_max_free_m", "force_max_n", "yield_displacement_m", "demand",
 	    "demand_free"};
 	static const char *const both[] = {"impulse_max_n_s", "contact_count", "contact_time_s"};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(2, columns);
 	char signal[64], body[96];
 	cell_failed(result, at);
 	for (int s = 0; s < reading_count(result, "%s/signals", at); s++) {
@@ -72,7 +72,7 @@ static void print_storeys(const struct reading *result, const char *at)
 	               {"floors", "acceleration_max_m_s2"},
 	               {"floors", "acceleration_max_free_m_s2"}};
 	const int n = reading_count(result, "%s/signals", at);
-	struct table *table = table_open(columns);
+	struct table *table = table_open(2, columns);
 	for (int b = 0; b < reading_count(result, "%s/signals/0/buildings", at); b++)
 		for (int i = 0; i < reading_count(result, "%s/signals/0/buildings/%d/storeys", at, b); i++) {
 			table_number(table, b);
@@ -85,7 +85,8 @@ static void print_storeys(const struct reading *result, const char *at)
 				table_number(table, sum / n);
 			}
 		}
-	puts("\nstoreys and the floors above them, means over the signals of what is largest in each");
+	putchar('\n');
+	table_prose(0, "storeys and the floors above them, means over the signals of what is largest in each");
 	table_print(table, 2);
 	table_close(table);
 }
@@ -97,7 +98,7 @@ static void print_contacts(const struct reading *result, const char *at)
 	static const char *const members[] = {"impulse_max_n_s", "force_max_n", "contact_count", "contact_time_s",
 	                                      "first_speed_m_s"};
 	const int n = reading_count(result, "%s/signals", at);
-	struct table *table = table_open(columns);
+	struct table *table = table_open(2, columns);
 	for (int k = 0; k < reading_count(result, "%s/signals/0/contacts", at); k++) {
 		char contact[96], levels[64];
 		snprintf(contact, sizeof contact, "%s/signals/0/contacts/%d", at, k);
@@ -112,8 +113,10 @@ static void print_contacts(const struct reading *result, const char *at)
 			table_number(table, sum / n);
 		}
 	}
-	puts("\ncontacts, by the index of the building on their left and the levels they join; means over the "
-	     "signals");
+	putchar('\n');
+	table_prose(
+	    0, "contacts, by the index of the building on their left and the levels they join; means over the "
+	       "signals");
 	table_print(table, 2);
 	table_close(table);
 }
@@ -152,7 +155,7 @@ static void convergence(const struct reading *result)
 	                                      "impulse", "history", "order", "cpu_s",  "x event", NULL};
 	static const char *const members[] = {"displacement_error_mean", "demand_error_mean",
 	                                      "impulse_error_mean", "history_error_mean", "order"};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(3, columns);
 	double event = reading_number(result, "/timing/run_cpu_s/0");
 	for (int row = 0; row < reading_count(result, "/rows"); row++) {
 		double failed = reading_number(result, "/rows/%d/runs_failed", row);
@@ -195,7 +198,7 @@ static void floor_spectrum(const struct reading *result)
 	                                      "ratio"};
 	cell_failed(result, "");
 	puts("\npseudo-acceleration [m/s2], means over the signals, of the first 16 and 84 % too");
-	struct table *table = table_open(columns);
+	struct table *table = table_open(1, columns);
 	for (int k = 0; k < reading_count(result, "/frequencies_hz"); k++) {
 		table_number(table, reading_number(result, "/frequencies_hz/%d", k));
 		for (int row = 0; row < reading_count(result, "/spectra"); row++) {
@@ -208,14 +211,15 @@ static void floor_spectrum(const struct reading *result)
 	}
 	table_print(table, 2);
 	table_close(table);
-	table = table_open(peaks);
+	table = table_open(1, peaks);
 	for (int j = 0; j < reading_count(result, "/peaks") && j < PEAKS; j++)
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
 			table_number(table, reading_number(result, "/peaks/%d/%s", j, members[m]));
 	puts("\npeaks of the spectrum with pounding, beside those of pulses every half period");
 	table_print(table, 2);
 	table_close(table);
-	puts("\nlargest relative error over the frequencies, from the same on half the sample step");
+	putchar('\n');
+	table_prose(0, "largest relative error over the frequencies, from the same on half the sample step");
 	for (int row = 0; row < reading_count(result, "/accuracy/spectra"); row++)
 		printf("  %s %.2g\n", reading_text(result, "/accuracy/spectra/%d/name", row),
 		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));
@@ -257,7 +261,7 @@ static void print_list(const struct reading *result, const char *at, const struc
 	for (; list->columns[n].head; n++)
 		heads[n] = list->columns[n].head;
 	heads[n] = NULL;
-	struct table *table = table_open(heads);
+	struct table *table = table_open(1, heads);
 	for (int k = 0; k < reading_count(result, "%s/%s", at, list->members); k++)
 		for (int j = 0; j < n; j++) {
 			const char *member = list->columns[j].member;
@@ -273,7 +277,7 @@ static void print_list(const struct reading *result, const char *at, const struc
 /* How wide the gap of a cell has to be, and what rules ask for. */
 static void print_needs(const struct reading *result, const char *at)
 {
-	printf("\ngap needed: mean %.4g m, standard deviation %.4g m, largest %.4g m of %.0f runs\n",
+	printf("\ngap needed: mean %.4g m, deviation %.4g m, largest %.4g m of %.0f runs\n",
 	       reading_number(result, "%s/gap_needed/mean_m", at),
 	       reading_number(result, "%s/gap_needed/standard_deviation_m", at),
 	       reading_number(result, "%s/gap_needed/largest_m", at),
@@ -346,7 +350,7 @@ static void separation(const struct reading *result)
 static void print_work(const struct reading *result)
 {
 	static const char *const columns[] = {"work", "asked", "run", NULL};
-	struct table *table = table_open(columns);
+	struct table *table = table_open(1, columns);
 	const char *stage, *what;
 	if (!reading_has(result, "/work")) {
 		table_close(table);

@@ -136,9 +136,9 @@ static void print_tables(int n, const struct shown *shown, const struct periods 
 	const char *names[COLUMNS + 4] = {"file", "format", "unit"};
 	for (int c = 0; c < COLUMNS; c++)
 		names[3 + c] = columns[c].name;
-	struct table *table = table_open(
-	    periods->n ? (const char *const[]){"file", "period_s", "psa_m_s2", "interpolation_difference", NULL}
-	               : names);
+	struct table *table = table_open(1, periods->n ? (const char *const[]){"file", "period_s", "psa_m_s2",
+	                                                                       "interpolation_difference", NULL}
+	                                               : names);
 	for (int i = 0; i < n; i++) {
 		for (int k = 0; k < periods->n; k++) {
 			table_text(table, shown[i].path);

@@ -6,6 +6,7 @@
  * of many a row for each output and a column for each input, from the lowest to the highest over cells, frequencies,
  * stories. */
 #include "client/summary.h"
+#include "client/cell.h"
 
 #include "client/command.h"
 #include "client/table.h"
@@ -117,22 +118,6 @@ static void order_find(struct summary *summary)
 
 /* ---- texts ---- */
 
-/* A text of at most `width` columns, for free; what is cut ends with "...". */
-static char *cut(const char *text, int width)
-{
-	char *copy = command_text("%s", text);
-	if (table_width(copy) <= width)
-		return copy;
-	int n = 0;
-	char *c = copy;
-	for (; n < width - 3; n++)
-		do
-			c++;
-		while (((unsigned char)*c & 0xc0) == 0x80);
-	strcpy(c, "...");
-	return copy;
-}
-
 static void chart(double share)
 {
 	long full = lround(fmin(fmax(share, 0.0), 1.0) * CHART);
@@ -150,6 +135,8 @@ static void print_estimate(const struct reading *result, const char *input, cons
 	              2;
 	if (!isfinite(value))
 		printf("  %s %6s %7s", index, "-", "");
+	else if (half > 0 && half < 0.0005)
+		printf("  %s %6.3f +-%-5s", index, value, "<.001");
 	else if (isfinite(half))
 		printf("  %s %6.3f +-%-5.3f", index, value, half);
 	else
@@ -171,26 +158,13 @@ static void print_output(const struct summary *summary, int output)
 	char at[PATH_SIZE], input[PATH_SIZE + 32];
 	int width = 0;
 	snprintf(at, sizeof at, "/cells/0/outputs/%d", output);
-	char *name = cut(reading_text(result, "%s/name", at), LABEL_WIDTH);
-	fputs("  ", stdout);
-	table_say(name);
-	free(name);
-	double frequency = reading_number(result, "%s/frequency_hz", at);
-	double building = reading_number(result, "%s/building", at);
-	if (isfinite(frequency))
-		printf(" at %.4g Hz", frequency);
-	if (isfinite(building))
-		printf(", building %.0f, story %.0f", building, reading_number(result, "%s/storey", at));
-	if (isfinite(reading_number(result, "%s/contact", at)))
-		printf(", contact %.0f", reading_number(result, "%s/contact", at));
-	printf(": mean %.4g", reading_number(result, "%s/mean", at));
-	double noise = reading_number(result, "%s/noise_share", at);
-	if (isfinite(noise))
-		printf(", noise %.2g %%", 100 * noise);
-	double needed = rows_needed(result, at);
-	if (isfinite(needed))
-		printf(", needs %.0f rows", needed);
-	putchar('\n');
+	static const struct measure measures[] = {{"noise_share", ", noise %.2g %%", 100}, {NULL, NULL, 0}};
+	const double needed = rows_needed(result, at);
+	char *head = cell_output(result, at, measures);
+	char *line =
+	    isfinite(needed) ? command_text("%s, needs %.0f rows", head, needed) : command_text("%s", head);
+	table_prose(2, line);
+	free(line), free(head);
 	for (int j = 0; j < summary->n_inputs; j++) {
 		int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
@@ -198,7 +172,7 @@ static void print_output(const struct summary *summary, int output)
 	width = width > INPUT_WIDTH ? INPUT_WIDTH : width;
 	for (int k = 0; k < summary->n_inputs; k++) {
 		int j = summary->order[k];
-		char *label = cut(summary->inputs[j], width);
+		char *label = table_cut(summary->inputs[j], width);
 		fputs("    ", stdout);
 		table_say(label);
 		printf("%*s", width - table_width(label), "");
@@ -254,7 +228,7 @@ static void print_span(const struct span *span)
 static char *row_label(const struct row *row, int width)
 {
 	char *whole = row->n > 1 ? command_text("%s (%d)", row->output, row->n) : command_text("%s", row->output);
-	char *label = cut(whole, width);
+	char *label = table_cut(whole, width);
 	free(whole);
 	return label;
 }
@@ -267,11 +241,11 @@ static void print_rows(const struct summary *summary)
 		width = table_width(label) > width ? table_width(label) : width;
 		free(label);
 	}
-	int columns = (TABLE_PROSE - 2 - width) / CELL_WIDTH;
+	int columns = (TABLE_WIDTH - 2 - width) / CELL_WIDTH;
 	columns = columns < summary->n_inputs ? columns : summary->n_inputs;
 	printf("%*s", 2 + width, "");
 	for (int k = 0; k < columns; k++) {
-		char *name = cut(summary->inputs[summary->order[k]], CELL_WIDTH - 1);
+		char *name = table_cut(summary->inputs[summary->order[k]], CELL_WIDTH - 1);
 		table_tame(name);
 		printf("%*s%s", CELL_WIDTH - table_width(name), "", name);
 		free(name);

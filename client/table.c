@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS_MAX = 16, GAP = 2 };
+enum { COLUMNS_MAX = 40, GAP = 2, KEY_MOST = 32, TEXT_LEAST = 16 };
 
 struct cell {
 	char *text; /* NULL: no value */
@@ -20,14 +20,16 @@ struct cell {
 
 struct table {
 	int n_columns, n_cells, room;
+	int n_keys;               /* columns that are printed again where a row is folded */
 	char *names[COLUMNS_MAX]; /* (n_columns) */
 	struct cell *cells;       /* (n_cells), row-major */
 };
 
 /* Opens an empty table. */
-struct table *table_open(const char *const names[])
+struct table *table_open(int n_keys, const char *const names[])
 {
 	struct table *table = command_sure(calloc(1, sizeof *table));
+	table->n_keys = n_keys;
 	while (names[table->n_columns]) {
 		table->names[table->n_columns] = command_sure(strdup(names[table->n_columns]));
 		table->n_columns++;
@@ -87,6 +89,30 @@ void table_tame(char *text)
 	}
 }
 
+/* The byte at which character n of a text begins. */
+static size_t character_at(const char *text, int n)
+{
+	size_t at = 0;
+	for (; text[at] && (n > 0 || ((unsigned char)text[at] & 0xc0) == 0x80); at++)
+		n -= ((unsigned char)text[at + 1] & 0xc0) != 0x80;
+	return at;
+}
+
+/* What is left out of a path is its beginning, and of any other text its middle: where they differ stays.
+ *
+ * Memory   allocates; the caller frees
+ * Test     client_wire
+ */
+char *table_cut(const char *text, int width)
+{
+	const int n = table_width(text), kept = width - 3;
+	if (n <= width)
+		return command_text("%s", text);
+	const int head = strchr(text, '/') ? 0 : kept / 2;
+	return command_text("%.*s...%s", (int)character_at(text, head), text,
+	                    text + character_at(text, n - (kept - head)));
+}
+
 static void pad(int n)
 {
 	printf("%*s", n > 0 ? n : 0, "");
@@ -103,11 +129,11 @@ void table_say(const char *text)
 void table_prose(int indent, const char *text)
 {
 	char *words = command_sure(strdup(text)), *rest;
-	int column = TABLE_PROSE;
+	int column = TABLE_WIDTH;
 	table_tame(words);
 	for (char *word = strtok_r(words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
 		int width = table_width(word);
-		bool fits = column + 1 + width <= TABLE_PROSE;
+		bool fits = column + 1 + width <= TABLE_WIDTH;
 		if (!fits && word != words)
 			putchar('\n');
 		pad(fits ? 1 : indent);
@@ -121,41 +147,95 @@ void table_prose(int indent, const char *text)
 /* Prints one cell in its column; the last column of text is not padded. */
 static void put(const char *text, int width, bool right, bool last)
 {
-	int blanks = width - table_width(text);
+	const int blanks = width - table_width(text);
 	if (right)
 		pad(blanks);
-	table_say(text);
+	char *within = table_cut(text, width);
+	table_say(within);
+	free(within);
 	if (!right && !last)
 		pad(blanks);
 }
 
-/* Prints the table aligned; a column in which no row has a value is left out. */
-void table_print(const struct table *table, int indent)
+/* how a table is laid out: of each column its width, 0: no row has a value; and whether it is of numbers */
+struct layout {
+	int width[COLUMNS_MAX];
+	bool right[COLUMNS_MAX];
+};
+
+static struct layout layout_of(const struct table *table, int indent)
 {
-	int width[COLUMNS_MAX] = {0}, last = 0; /* width 0: no value in the column */
-	bool right[COLUMNS_MAX] = {0};
+	struct layout layout = {0};
 	for (int i = 0; i < table->n_cells; i++) {
 		const struct cell *cell = &table->cells[i];
 		int column = i % table->n_columns, n = cell->text ? table_width(cell->text) : 0;
-		width[column] = n > width[column] ? n : width[column];
-		right[column] |= cell->is_number;
+		layout.width[column] = n > layout.width[column] ? n : layout.width[column];
+		layout.right[column] |= cell->is_number;
 	}
 	for (int c = 0; c < table->n_columns; c++) {
-		int n = table_width(table->names[c]);
-		width[c] = table->n_cells && !width[c] ? 0 : n > width[c] ? n : width[c];
-		last = width[c] ? c : last;
+		int *width = &layout.width[c], n = table_width(table->names[c]);
+		*width = table->n_cells && !*width ? 0 : n > *width ? n : *width;
+		if (c<table->n_keys && * width> KEY_MOST)
+			*width = KEY_MOST;
+		if (*width > TABLE_WIDTH - indent)
+			*width = TABLE_WIDTH - indent;
 	}
-	for (int i = -table->n_columns; i < table->n_cells; i++) {
-		int c = (i + table->n_columns) % table->n_columns;
-		if (c == 0)
-			pad(indent);
-		const char *text = i < 0 ? table->names[c] : table->cells[i].text ? table->cells[i].text : "-";
-		if (width[c])
-			put(text, width[c], right[c], c == last);
-		if (width[c] && c != last)
-			pad(GAP);
-		if (c == table->n_columns - 1)
+	return layout;
+}
+
+/* The column behind the last one that fits beside the keys, from `first` on: one does, however wide it is; the table's last one is
+ * cut to fit where it is of texts. */
+static int block_end(const struct table *table, struct layout *layout, int indent, int first)
+{
+	int used = indent, end = first;
+	for (int c = 0; c < table->n_keys; c++)
+		used += layout->width[c] ? layout->width[c] + GAP : 0;
+	for (; end < table->n_columns; end++) {
+		const int left = TABLE_WIDTH - used;
+		if (end == table->n_columns - 1 && !layout->right[end] && left >= TEXT_LEAST &&
+		    left < layout->width[end])
+			layout->width[end] = left;
+		if (end > first && layout->width[end] > left)
+			break;
+		used += layout->width[end] ? layout->width[end] + GAP : 0;
+	}
+	return end;
+}
+
+/* The keys of all rows and their columns first to end - 1. */
+static void print_block(const struct table *table, const struct layout *layout, int indent, int first,
+                        int end)
+{
+	int last = 0;
+	for (int c = 0; c < end; c++)
+		last = layout->width[c] && (c < table->n_keys || c >= first) ? c : last;
+	for (int row = -1; row < table->n_cells / table->n_columns; row++) {
+		pad(indent);
+		for (int c = 0; c <= last; c++) {
+			if (!layout->width[c] || (c >= table->n_keys && c < first))
+				continue;
+			const char *text = row < 0 ? table->names[c] : table->cells[row * table->n_columns + c].text;
+			put(text ? text : "-", layout->width[c], layout->right[c], c == last);
+			if (c != last)
+				pad(GAP);
+		}
+		putchar('\n');
+	}
+}
+
+/* Prints the table aligned, in as many blocks below each other as its width needs; a column in which no row has a value is
+ * left out.
+ *
+ * Test     client_run: every_table_fits_a_terminal_of_80_columns
+ */
+void table_print(const struct table *table, int indent)
+{
+	struct layout layout = layout_of(table, indent);
+	for (int first = table->n_keys, end; first < table->n_columns; first = end) {
+		if (first > table->n_keys)
 			putchar('\n');
+		end = block_end(table, &layout, indent, first);
+		print_block(table, &layout, indent, first, end);
 	}
 }
 

@@ -6,15 +6,18 @@
 
 struct table;
 
-enum { TABLE_WIDTH = 100, TABLE_PROSE = 80 }; /* columns that tables and sentences keep within */
+enum { TABLE_WIDTH = 80 }; /* columns that tables and sentences keep within */
 
-/* `names` are the column heads, ending with NULL; they are copied.  No function fails: no memory ends the program. */
-struct table *table_open(const char *const names[]);
+/* `names` are the column heads, ending with NULL; they are copied.  The first n_keys say what a row is about: where a table is
+ * wider than TABLE_WIDTH its other columns follow below each other, with these before them.  No function fails: no memory ends
+ * the program. */
+struct table *table_open(int n_keys, const char *const names[]);
 void table_text(struct table *table,
                 const char *text);                    /* next cell, rows fill from the left; NULL: no value */
 void table_number(struct table *table, double value); /* NAN: no value */
 
-/* Aligned: `indent` blanks before each row, numbers to the right, columns without any value left out. */
+/* Aligned: `indent` blanks before each row, numbers to the right, columns without any value left out, the middle of long
+ * texts left out. */
 void table_print(const struct table *table, int indent);
 void table_print_csv(const struct table *table);
 void table_close(struct table *table);
@@ -22,12 +25,15 @@ void table_close(struct table *table);
 /* Columns a text takes on a terminal: its characters, not its bytes. */
 int table_width(const char *text);
 
+/* A text of at most `width` columns, for the caller to free; "..." is where it is cut. */
+char *table_cut(const char *text, int width);
+
 /* Puts '?' where a text would steer the terminal. */
 void table_tame(char *text);
 
 /* Prints a text that came from elsewhere, tamed; NULL: nothing. */
 void table_say(const char *text);
-/* Prints one in lines of at most TABLE_PROSE columns, all `indent` blanks in. */
+/* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
 void table_prose(int indent, const char *text);
 
 #endif

@@ -66,6 +66,15 @@ static const struct script SCRIPTS[] = {
      "id,status,progress,runs_done,runs_total,over_estimate,queue_position,expected_start,created,kind,"
      "name\n7,running,,3,",
      NULL},
+    // a line for each study; a name keeps both ends
+    {{JSON("200 OK",
+           "{\"studies\": [{\"id\": \"0123456789abcdef\", \"status\": \"succeeded\", \"progress\": 1, "
+           "\"runs_done\": 90, \"created\": \"2026-01-02T03:04:05Z\", \"name\": \"one long name of a study, "
+           "its second part\"}]}")},
+     {"list", "--format=table"},
+     0,
+     "2026-01-02T03:04:05Z  one long...ond part\n",
+     "runs_done"},
     {{JSON("404 Not Found", "{\"detail\": \"\\u001b]0;title\"}")}, {"status", "1"}, 1, "?]0;title", "\033"},
     {{JSON("200 OK", "{\"status\": \"failed\", \"error\": \"too few rows\"}")},
      {"wait", "1"},
