@@ -234,19 +234,25 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];
-	const char *before = "  widest interval: ", *of = " rows";
+	char *line = command_text("%s", "widest interval:");
 	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
-	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++, before = ", ", of = "") {
+	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++) {
 		double half = widest(result, accuracy, k);
-		if (!isfinite(half))
+		if (!isfinite(half)) {
+			free(line);
 			return;
-		printf("%s+-%.2g of %.0f%s", before, half, reading_number(result, "%s/rows/%d", accuracy, k), of);
+		}
+		char *longer = command_text("%s%s +-%.2g of %.0f%s", line, k ? "," : "", half,
+		                            reading_number(result, "%s/rows/%d", accuracy, k), k ? "" : " rows");
+		free(line);
+		line = longer;
 	}
+	table_prose(INDENT, line);
+	free(line);
 	double slope = reading_number(result, "%s/slope", accuracy);
 	double rows = reading_number(result, "%s/rows_to_halve", accuracy);
 	if (isfinite(rows))
-		printf("\n  twice the rows leave %.2g of it, %.0f rows half of it", exp2(slope), rows);
-	putchar('\n');
+		printf("  twice the rows leave %.2g of it, %.0f rows half of it\n", exp2(slope), rows);
 	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
 	char *changes = isfinite(change)
@@ -254,10 +260,10 @@ static void print_accuracy(const struct reading *result, const char *output)
 	                                   reading_number(result, "%s/difference_median", accuracy),
 	                                   reading_number(result, "%s/difference_largest", accuracy), change)
 	                    : command_text("%s", "");
-	char *line = command_text("%.0f runs checked%s", checked, changes);
+	char *checks = command_text("%.0f runs checked%s", checked, changes);
 	if (checked > 0.0)
-		table_prose(INDENT, line);
-	free(line), free(changes);
+		table_prose(INDENT, checks);
+	free(checks), free(changes);
 	const char *note = reading_text(result, "%s/note", accuracy);
 	if (note)
 		table_prose(INDENT, note);
