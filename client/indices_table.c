@@ -431,8 +431,8 @@ static void print_cost(const struct reading *result)
 	if (!reading_has(result, "/timing"))
 		return;
 	for (int k = 0; k < reading_count(result, "/timing/rows"); k++, before = ", ")
-		printf("%s%.2g s for %.0f rows", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
-		       reading_number(result, "/timing/rows/%d/rows", k));
+		printf("%s%.2g%s of %.0f%s", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
+		       k ? "" : " s", reading_number(result, "/timing/rows/%d/rows", k), k ? "" : " rows");
 	putchar('\n');
 }
 

@@ -46,10 +46,14 @@ enum {
 #define X(name, values, lowest, highest, text) FIGURE_KEY_##name,
 	FIGURE_ARGUMENTS(X)
 #undef X
+	    FIGURE_KEYS_END
 };
 /* cell and signal among them */
-#define MOTION_KEYS "\1\10"
-#define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13"
+#define MOTION_KEYS "\1\11"
+#define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13\14"
+
+static_assert(sizeof FIGURE_KEYS == FIGURE_KEYS_END, "the keys of all arguments of figures");
+static_assert(FIGURE_KEY_cell == 1 && FIGURE_KEY_signal == 9, "the keys of a motion's arguments");
 
 // clang-format off
 static const struct command COMMANDS[] = {
