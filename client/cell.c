@@ -31,9 +31,7 @@ void cell_sweep(const struct reading *result, int cell)
 		if (!text && reading_type(result, "/cells/%d/sweep/%s", cell, token) == 'b')
 			text = reading_true(result, "/cells/%d/sweep/%s", cell, token) ? "true" : "false";
 		snprintf(number, sizeof number, "%.10g", reading_number(result, "/cells/%d/sweep/%s", cell, token));
-		char *longer = command_text("%s%s%s = %s", line, i ? ", " : "", path, text ? text : number);
-		free(line);
-		line = longer;
+		line = command_append(line, "%s%s = %s", i ? ", " : "", path, text ? text : number);
 	}
 	if (*line) {
 		putchar('\n');
@@ -54,13 +52,6 @@ void cell_failed(const struct reading *result, const char *at)
 		putchar('\n');
 }
 
-static char *longer(char *text, const char *more)
-{
-	char *whole = command_text("%s%s", text, more);
-	free(text);
-	return whole;
-}
-
 static char *measures_add(char *text, const struct reading *result, const char *at,
                           const struct measure measures[])
 {
@@ -70,7 +61,7 @@ static char *measures_add(char *text, const struct reading *result, const char *
 		if (!isfinite(value))
 			continue;
 		snprintf(more, sizeof more, measures->format, measures->times * value);
-		text = longer(text, more);
+		text = command_append(text, "%s", more);
 	}
 	return text;
 }

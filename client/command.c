@@ -1,6 +1,5 @@
 /* command.c - what every subcommand may call: one line of complaint, texts and memory of its own. */
 #include "client/command.h"
-#include "client/table.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -37,6 +36,28 @@ char *command_text(const char *format, ...)
 	return text;
 }
 
+char *command_append(char *text, const char *format, ...)
+{
+	va_list arguments;
+	va_start(arguments, format);
+	char *more = text_of(format, arguments), *whole = command_text("%s%s", text, more);
+	va_end(arguments);
+	free(text), free(more);
+	return whole;
+}
+
+/* Keeps text from other people off the controls of a terminal. */
+void command_tame(char *text)
+{
+	for (unsigned char *c = (unsigned char *)text; *c; c++) {
+		// C0 and DEL, and the C1 controls, which UTF-8 writes c2 80 .. c2 9f
+		if (*c < ' ' || *c == 0x7f)
+			*c = '?';
+		else if (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)
+			c[0] = c[1] = '?';
+	}
+}
+
 /* Says one line on stderr, harmless to a terminal whatever the texts in it hold. */
 void command_complain(const char *format, ...)
 {
@@ -44,7 +65,7 @@ void command_complain(const char *format, ...)
 	va_start(arguments, format);
 	char *line = text_of(format, arguments);
 	va_end(arguments);
-	table_tame(line);
+	command_tame(line);
 	fprintf(stderr, "pound: %s\n", line);
 	free(line);
 }

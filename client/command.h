@@ -86,6 +86,12 @@ void command_complain(const char *format, ...) __attribute__((format(printf, 1, 
 /* printf into memory of its own, for the caller to free. */
 char *command_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* A text with more at its end; the text is freed, what is returned is for the caller to free. */
+char *command_append(char *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Puts '?' where a text would steer the terminal. */
+void command_tame(char *text);
+
 /* The memory that was just allocated; where there is none, the program ends. */
 void *command_sure(void *memory);
 

@@ -135,11 +135,8 @@ static char *row_label(const struct estimates *of, int row)
 	row_path(of, row, path);
 	const char *name = reading_text(of->result, "%s/name", path), *input;
 	char *label = command_text("%s", name ? name : "");
-	for (int k = 0; (input = reading_text(of->result, "%s/inputs/%d", path, k)); k++) {
-		char *longer = command_text("%s%s%s", label, k ? ", " : "", input);
-		free(label);
-		label = longer;
-	}
+	for (int k = 0; (input = reading_text(of->result, "%s/inputs/%d", path, k)); k++)
+		label = command_append(label, "%s%s", k ? ", " : "", input);
 	return label;
 }
 
@@ -242,10 +239,8 @@ static void print_accuracy(const struct reading *result, const char *output)
 			free(line);
 			return;
 		}
-		char *longer = command_text("%s%s +-%.2g of %.0f%s", line, k ? "," : "", half,
-		                            reading_number(result, "%s/rows/%d", accuracy, k), k ? "" : " rows");
-		free(line);
-		line = longer;
+		line = command_append(line, "%s +-%.2g of %.0f%s", k ? "," : "", half,
+		                      reading_number(result, "%s/rows/%d", accuracy, k), k ? "" : " rows");
 	}
 	table_prose(INDENT, line);
 	free(line);
@@ -255,15 +250,14 @@ static void print_accuracy(const struct reading *result, const char *output)
 		printf("  twice the rows leave %.2g of it, %.0f rows half of it\n", exp2(slope), rows);
 	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
-	char *changes = isfinite(change)
-	                    ? command_text(", differences %.2g (median) to %.2g: no index moves by over %.2g",
-	                                   reading_number(result, "%s/difference_median", accuracy),
-	                                   reading_number(result, "%s/difference_largest", accuracy), change)
-	                    : command_text("%s", "");
-	char *checks = command_text("%.0f runs checked%s", checked, changes);
+	char *checks = command_text("%.0f runs checked", checked);
+	if (isfinite(change))
+		checks = command_append(checks, ", differences %.2g (median) to %.2g: no index moves by over %.2g",
+		                        reading_number(result, "%s/difference_median", accuracy),
+		                        reading_number(result, "%s/difference_largest", accuracy), change);
 	if (checked > 0.0)
 		table_prose(INDENT, checks);
-	free(checks), free(changes);
+	free(checks);
 	const char *note = reading_text(result, "%s/note", accuracy);
 	if (note)
 		table_prose(INDENT, note);

@@ -130,8 +130,9 @@ static void chart(double share)
 static void print_estimate(const struct reading *result, const char *input, const char *index)
 {
 	double value = reading_number(result, "%s/%s", input, index);
-	double half = (reading_number(result, "%s/%s_high", input, index) -
-	               reading_number(result, "%s/%s_low", input, index)) /
+	// of an interval without width the sign is a rounding
+	double half = fabs(reading_number(result, "%s/%s_high", input, index) -
+	                   reading_number(result, "%s/%s_low", input, index)) /
 	              2;
 	if (!isfinite(value))
 		printf("  %s %6s %7s", index, "-", "");
@@ -161,10 +162,10 @@ static void print_output(const struct summary *summary, int output)
 	static const struct measure measures[] = {{"noise_share", ", noise %.2g %%", 100}, {NULL, NULL, 0}};
 	const double needed = rows_needed(result, at);
 	char *head = cell_output(result, at, measures);
-	char *line =
-	    isfinite(needed) ? command_text("%s, needs %.0f rows", head, needed) : command_text("%s", head);
-	table_prose(2, line);
-	free(line), free(head);
+	if (isfinite(needed))
+		head = command_append(head, ", needs %.0f rows", needed);
+	table_prose(2, head);
+	free(head);
 	for (int j = 0; j < summary->n_inputs; j++) {
 		int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
@@ -246,7 +247,7 @@ static void print_rows(const struct summary *summary)
 	printf("%*s", 2 + width, "");
 	for (int k = 0; k < columns; k++) {
 		char *name = table_cut(summary->inputs[summary->order[k]], CELL_WIDTH - 1);
-		table_tame(name);
+		command_tame(name);
 		printf("%*s%s", CELL_WIDTH - table_width(name), "", name);
 		free(name);
 	}

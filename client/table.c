@@ -77,18 +77,6 @@ int table_width(const char *text)
 	return n;
 }
 
-/* Keeps text from other people off the controls of a terminal. */
-void table_tame(char *text)
-{
-	for (unsigned char *c = (unsigned char *)text; *c; c++) {
-		// C0 and DEL, and the C1 controls, which UTF-8 writes c2 80 .. c2 9f
-		if (*c < ' ' || *c == 0x7f)
-			*c = '?';
-		else if (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)
-			c[0] = c[1] = '?';
-	}
-}
-
 /* The byte at which character n of a text begins. */
 static size_t character_at(const char *text, int n)
 {
@@ -121,7 +109,7 @@ static void pad(int n)
 void table_say(const char *text)
 {
 	char *tame = command_sure(strdup(text ? text : ""));
-	table_tame(tame);
+	command_tame(tame);
 	fputs(tame, stdout);
 	free(tame);
 }
@@ -130,7 +118,7 @@ void table_prose(int indent, const char *text)
 {
 	char *words = command_sure(strdup(text)), *rest;
 	int column = TABLE_WIDTH;
-	table_tame(words);
+	command_tame(words);
 	for (char *word = strtok_r(words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
 		int width = table_width(word);
 		bool fits = column + 1 + width <= TABLE_WIDTH;

@@ -28,9 +28,6 @@ int table_width(const char *text);
 /* A text of at most `width` columns, for the caller to free; "..." is where it is cut. */
 char *table_cut(const char *text, int width);
 
-/* Puts '?' where a text would steer the terminal. */
-void table_tame(char *text);
-
 /* Prints a text that came from elsewhere, tamed; NULL: nothing. */
 void table_say(const char *text);
 /* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
