@@ -1,4 +1,4 @@
-/* largest.h - the largest |a| of samples, at the lane width of whoever includes it. */
+/* largest.h - the largest |a| of samples, at the lane width of the file that includes it. */
 #ifndef LARGEST_H
 #define LARGEST_H
 

@@ -9,11 +9,8 @@ enum {
 	NOISE_CHUNK = 32, /* draws computed at a time */
 };
 
-/* z[w][l]: normal w of draw first + l, the same bits for any width of cpu_width.h  (NOISE_WORDS x NOISE_CHUNK) */
-void pound_normals_fill(int width, struct pound_stream stream, uint32_t first,
-                        double z[NOISE_WORDS][NOISE_CHUNK]);
-
-/* normals.inl, compiled once for each */
+/* z[w][l]: normal w of draw first + l, the same bits at any width  (NOISE_WORDS x NOISE_CHUNK).  normals.inl, compiled once for
+ * each width of cpu_width.h. */
 void pound_normals_w8(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
 void pound_normals_w4(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);
 void pound_normals_w1(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK]);

@@ -14,12 +14,19 @@ enum { CHUNKS = 1000, DRAWS = CHUNKS * NOISE_CHUNK, NUMBERS = DRAWS * NOISE_WORD
 
 static double number[NUMBERS]; /* (DRAWS x NOISE_WORDS) */
 
+static void fill(int width, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK])
+{
+	static void (*const of[POUND_WIDTHS])(struct pound_stream, uint32_t, double[NOISE_WORDS][NOISE_CHUNK]) = {
+	    pound_normals_w8, pound_normals_w4, pound_normals_w1, pound_normals_portable};
+	of[width](stream, first, z);
+}
+
 static int draw_numbers(void **state)
 {
 	(void)state;
 	for (int c = 0; c < CHUNKS; c++) {
 		double z[NOISE_WORDS][NOISE_CHUNK];
-		pound_normals_fill(pound_dispatch_width(0), stream, (uint32_t)(c * NOISE_CHUNK), z);
+		fill(pound_dispatch_width(0), (uint32_t)(c * NOISE_CHUNK), z);
 		for (int l = 0; l < NOISE_CHUNK; l++)
 			for (int w = 0; w < NOISE_WORDS; w++)
 				number[(c * NOISE_CHUNK + l) * NOISE_WORDS + w] = z[w][l];
@@ -35,7 +42,7 @@ static void chunks_hold_the_words_of_single_draws(void **state)
 	const uint32_t firsts[] = {0, 1, 12345, 0xfffffff0}; /* the last one wraps around */
 	for (size_t i = 0; i < sizeof firsts / sizeof firsts[0]; i++) {
 		double z[NOISE_WORDS][NOISE_CHUNK];
-		pound_normals_fill(POUND_WIDTH_PORTABLE, stream, firsts[i], z);
+		fill(POUND_WIDTH_PORTABLE, firsts[i], z);
 		for (int l = 0; l < NOISE_CHUNK; l++) {
 			const philox4x32_ctr_t word = pound_random_words(stream, firsts[i] + (uint32_t)l);
 			for (int w = 0; w < NOISE_WORDS; w += 2) {
@@ -53,8 +60,8 @@ static void a_draw_is_the_same_in_whatever_chunk(void **state)
 {
 	(void)state;
 	double a[NOISE_WORDS][NOISE_CHUNK], b[NOISE_WORDS][NOISE_CHUNK];
-	pound_normals_fill(POUND_WIDTH_PORTABLE, stream, 100, a);
-	pound_normals_fill(POUND_WIDTH_PORTABLE, stream, 107, b);
+	fill(POUND_WIDTH_PORTABLE, 100, a);
+	fill(POUND_WIDTH_PORTABLE, 107, b);
 	for (int w = 0; w < NOISE_WORDS; w++)
 		assert_memory_equal(&a[w][7], &b[w][0], (NOISE_CHUNK - 7) * sizeof(double));
 }
@@ -66,8 +73,8 @@ static void lanes_of_any_width_give_the_same_bits(void **state)
 		for (uint32_t first = 0; first < 100 * NOISE_CHUNK && pound_dispatch_width(lanes) >= 0;
 		     first += NOISE_CHUNK) {
 			double a[NOISE_WORDS][NOISE_CHUNK], b[NOISE_WORDS][NOISE_CHUNK];
-			pound_normals_fill(POUND_WIDTH_PORTABLE, stream, first, a);
-			pound_normals_fill(pound_dispatch_width(lanes), stream, first, b);
+			fill(POUND_WIDTH_PORTABLE, first, a);
+			fill(pound_dispatch_width(lanes), first, b);
 			assert_memory_equal(a, b, sizeof a);
 		}
 }
