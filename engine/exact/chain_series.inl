@@ -223,6 +223,8 @@ static void story_settle(struct chain *c, int i, double ground)
 static void series_start(struct chain *c)
 {
 	const vd h = vsplat(c->dt), h2 = h * h;
+	assert(c->touching.n <= c->n_links &&
+	       c->own.n <= c->n_links); // a list of other links is of a step before
 	c->level = false;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
