@@ -236,7 +236,7 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		// who asks for gaps needed alone has all from both bodies together, where these are marched
+		// a study of gaps needed alone takes all from the run of both bodies together, where there is one
 		const struct pound_law *law = pound_scene_law(scene, i);
 		bool together =
 		    !pound_study_pounds(campaign->study) && !pound_law_linear(law->type) && !searched(law);
@@ -387,7 +387,7 @@ static void row_free(struct pound_request *request, int a)
 	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0 ||
 	                       pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR,
 	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
-	// who asks for gaps needed alone has all from the buildings together
+	// a study of gaps needed alone takes all from the run of all buildings together
 	for (int b = 0; b < scene.n_buildings && !pound_study_pounds(study); b++)
 		request->row_asks[a].buildings[b].wanted = false;
 }

@@ -26,8 +26,8 @@ const struct figure_row figure_rows[] = {
 	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level"},
 	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
-	{"separation", "separation",    " cell contact width ",               NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
-	{"fragility", "separation",     " cell contact width ",               NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
+	{"separation", "separation",    " cell contact width ",       NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
+	{"fragility", "separation",     " cell contact width ",       NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
 	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods"},
 	{0},
 };

@@ -17,7 +17,7 @@ bool plot_has_separation(const cJSON *result)
 	return plot_first(plot_member(contact ? contact : cell, "pounding")) != NULL;
 }
 
-/* What is known of the gap in a cell, of a row of buildings at the chosen contact; NULL: there is none, with a fault. */
+/* What is known of the gap in a cell, of a row of buildings at the chosen contact; NULL: there is no such contact, and the fault says so. */
 static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
 {
 	const cJSON *contacts = plot_member(cell, "contacts");
