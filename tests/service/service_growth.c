@@ -188,12 +188,21 @@ static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **st
 	free(study);
 }
 
+static void cancel(const struct service *service, const char *id)
+{
+	char path[64];
+	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
+	struct answer answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
+	assert_int_equal(answer.status, 200);
+	answer_free(&answer);
+}
+
 static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
 {
 	// a minute of one core
 	enum { SIGNALS_MANY = 500 };
 	struct service *service = *state;
-	char *study = service_study(SERVICE_ROWS, SIGNALS_MANY, SEED), id[17], path[64];
+	char *study = service_study(SERVICE_ROWS, SIGNALS_MANY, SEED), id[17];
 	service_submit(service, study, id);
 	struct answer answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
 	while (answer.status == 404) {
@@ -202,10 +211,7 @@ static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
 	}
 	assert_int_equal(answer.status, 200);
 	answer_free(&answer);
-	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
-	answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
-	assert_int_equal(answer.status, 200);
-	answer_free(&answer);
+	cancel(service, id);
 	answer = answer_of(service, "/v1/studies/%s/results", id, 409);
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
@@ -257,7 +263,7 @@ static void a_study_without_a_row_has_no_results_yet(void **state)
 {
 	struct service *service = *state;
 	// a row of half a million runs is not complete while the requests below are answered
-	char *study = service_study(16, 100000, SEED), id[17], path[64];
+	char *study = service_study(16, 100000, SEED), id[17];
 	service_submit(service, study, id);
 	struct answer answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 404);
 	assert_true(atoi(answer.retry_after) > 0);
@@ -265,10 +271,7 @@ static void a_study_without_a_row_has_no_results_yet(void **state)
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=perhaps", id, 400);
 	answer_free(&answer);
-	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
-	answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
-	assert_int_equal(answer.status, 200);
-	answer_free(&answer);
+	cancel(service, id);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 409);
 	answer_free(&answer);
 	free(study);
