@@ -131,6 +131,22 @@ char *document_hashed(const char *path, size_t *length, enum outcome *outcome, s
 	return read_with_files(path, length, outcome, study_name_hashes, study);
 }
 
+struct pound_study *document_study(const char *path, const char *text, size_t length, enum outcome *outcome)
+{
+	const struct study_files files = {.read = named_read, .with = path};
+	struct problems problems;
+	struct reading *reading = reading_open(text, length);
+	struct pound_study *study =
+	    study_from_document(&(struct study_document){.text = text,
+	                                                 .length = length,
+	                                                 .files = &files,
+	                                                 .design = reading && !reading_has(reading, "/scene")},
+	                        &problems);
+	reading_close(reading);
+	*outcome = study ? OUTCOME_OK : document_reject(path, &problems);
+	return study;
+}
+
 /* The bytes of a file that a document names. */
 char *document_file(const char *path, const struct study_source *of, size_t *length)
 {

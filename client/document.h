@@ -23,6 +23,10 @@ char *document_whole(const char *path, size_t *length, enum outcome *outcome);
 char *document_hashed(const char *path, size_t *length, enum outcome *outcome, struct pound_study **study);
 char *document_file(const char *path, const struct study_source *of, size_t *length);
 
+/* The study of a document that was read from a path, with the files that it names, also of a model that is run elsewhere; NULL:
+ * with the outcome, said on stderr why. */
+struct pound_study *document_study(const char *path, const char *text, size_t length, enum outcome *outcome);
+
 /* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
 void document_complain(const char *subject, const struct reading *problem);
 

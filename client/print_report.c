@@ -37,14 +37,44 @@ static void parts_free(struct parts *parts)
 	free(parts->samples);
 }
 
+/* Whether the document is the one that the result is of, by the hash of its meaning. */
+static enum outcome expect_study_of(const struct parts *parts, const struct options *options)
+{
+	struct reading *result = reading_open(parts->result, parts->n_result);
+	const char *hash = result ? reading_text(result, "/study_hash") : NULL;
+	const char *version = result ? reading_text(result, "/engine_version") : NULL;
+	char own[STUDY_HASH_SIZE];
+	enum outcome outcome = OUTCOME_OK;
+	struct pound_study *study = NULL;
+	if (version && !hash) {
+		command_complain("%s: this result is of no study document", document_name(options->argument));
+		outcome = OUTCOME_USAGE;
+	} else if (hash && (study = document_study(options->second, parts->study, parts->n_study, &outcome))) {
+		command_sure(study_hash(study, own) ? own : NULL);
+		study_free(study);
+		if (strcmp(own, hash) != 0) {
+			command_complain("%s is not the study of %s: its hash is %.12s, the result's study_hash is %.12s",
+			                 document_name(options->second), document_name(options->argument), own, hash);
+			if (version && strcmp(version, POUND_VERSION) != 0)
+				command_complain("the result is of pound %s, this is %s", version, POUND_VERSION);
+			outcome = OUTCOME_USAGE;
+		}
+	}
+	reading_close(result);
+	return outcome;
+}
+
 static enum outcome report_files(const struct options *options)
 {
 	struct parts parts = {0};
+	enum outcome outcome = OUTCOME_FAILED;
 	parts.result = document_read(options->argument, &parts.n_result);
 	if (parts.result && options->second)
 		parts.study = document_read(options->second, &parts.n_study);
-	bool read = parts.result && (parts.study || !options->second);
-	enum outcome outcome = read ? page_print(&parts, document_name(options->argument)) : OUTCOME_FAILED;
+	if (parts.result && (parts.study || !options->second))
+		outcome = parts.study ? expect_study_of(&parts, options) : OUTCOME_OK;
+	if (outcome == OUTCOME_OK)
+		outcome = page_print(&parts, document_name(options->argument));
 	parts_free(&parts);
 	return outcome;
 }
@@ -101,9 +131,15 @@ static enum outcome report_fetched(const struct options *options)
 
 /* `pound report RESULT|ID [STUDY.json]` prints the page.
  *
- * Test     client_figure: a_report_is_one_page_that_needs_nothing_else
+ * Test     client_figure: a_report_is_one_page_that_needs_nothing_else, a_report_has_no_other_study
  */
 enum outcome report_print(const struct options *options)
 {
-	return command_is_id(options->argument) ? report_fetched(options) : report_files(options);
+	if (!command_is_id(options->argument))
+		return report_files(options);
+	if (!options->second)
+		return report_fetched(options);
+	command_complain("the server has the document of study %s: leave out %s", options->argument,
+	                 options->second);
+	return OUTCOME_USAGE;
 }

@@ -13,22 +13,22 @@ enum { WIDTH = 1120 };
 
 // clang-format off
 const struct figure_row figure_rows[] = {
-	{"indices",   "sensitivity",    " cell output index width ",  "inputs",            false, "first-order and total indices with 95 % intervals, a panel for each output"},
-	{"swept",     "sensitivity",    " output index x width ",     "inputs",            false, "indices against a swept number, a line for each input"},
-	{"given",     "sensitivity",    " cell output width ",        "conditional_means", false, "mean output given one input, with its band"},
-	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half widths of the intervals against what they cost"},
-	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs"},
-	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding"},
-	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force in time"},
-	{"force",     "floor_spectrum", " signal from to width ",     NULL,                true,  "contact force against overlap, a loop for each contact"},
-	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding"},
-	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding"},
-	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level"},
-	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse"},
-	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time"},
-	{"separation", "separation",    " cell contact width ",       NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for"},
-	{"fragility", "separation",     " cell contact width ",       NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares"},
-	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods"},
+	{"indices",   "sensitivity",    " cell output index width ",  "inputs",            false, "first-order and total indices with 95 % intervals, a panel for each output", NULL},
+	{"swept",     "sensitivity",    " output index x width ",     "inputs",            false, "indices against a swept number, a line for each input", "it needs a \"sweep\" over a number"},
+	{"given",     "sensitivity",    " cell output width ",        "conditional_means", false, "mean output given one input, with its band", "it needs 30 rows, and an output that varies"},
+	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half widths of the intervals against what they cost", "it needs 60 rows, and an output that varies"},
+	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs", "it needs 30 rows, and at most 4 inputs or \"order\": \"second\""},
+	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding", NULL},
+	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force in time", "it is drawn from the samples of a study with \"histories\": true (pound run --samples FILE)"},
+	{"force",     "floor_spectrum", " signal from to width ",     NULL,                true,  "contact force against overlap, a loop for each contact", "it is drawn from the samples of a study with \"histories\": true (pound run --samples FILE)"},
+	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding", "it is of two oscillators, not of a row of buildings"},
+	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding", "it is of a row of buildings"},
+	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level", "it is of a row of buildings with contacts"},
+	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse", "it is drawn from the samples (pound run --samples FILE)"},
+	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time", NULL},
+	{"separation", "separation",    " cell contact width ",       NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for", NULL},
+	{"fragility", "separation",     " cell contact width ",       NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares", "it needs \"intensity\", the path of a sweep"},
+	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods", "it is drawn from a table of its own (pound motion --periods)"},
 	{0},
 };
 
@@ -124,6 +124,23 @@ static enum figure_status draw(const struct figure_row *row, struct plot *plot, 
 	return figure->svg ? FIGURE_DRAWN : out_of_memory(figure);
 }
 
+/* Writes what is true of a figure that a result has not, and which ones it has. */
+static void absent(const struct figure_row *row, const cJSON *result, bool sampled, struct figure *figure)
+{
+	const char *kind = plot_text(result, "kind"), *before = "; it has: ";
+	char why[120];
+	snprintf(why, sizeof why, "it is of studies of kind \"%s\", not \"%.40s\"", row->kind, kind);
+	if (strcmp(row->kind, kind) == 0 || strcmp(row->kind, "any") == 0)
+		snprintf(why, sizeof why, "%s", row->needs ? row->needs : "what it shows is missing");
+	size_t n = (size_t)snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s",
+	                            row->name, why);
+	for (const struct figure_row *has = figure_rows; has->name; has++)
+		if (figure_shows(has, result) && (!has->sampled || sampled) && n < sizeof figure->detail) {
+			n += (size_t)snprintf(figure->detail + n, sizeof figure->detail - n, "%s%s", before, has->name);
+			before = ", ";
+		}
+}
+
 /* Draws a figure of a parsed result, by choices that it takes. */
 enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
                              const struct figure_source *source, const struct figure_choice *choice,
@@ -132,11 +149,7 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 	*figure = (struct figure){0};
 	// what is drawn from samples alone needs no result
 	if ((row->sampled && !source->samples) || (plot_is_result(result) && !figure_shows(row, result))) {
-		snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s", row->name,
-		         strcmp(row->kind, "any") == 0 ? "it is drawn from a table of its own"
-		         : strcmp(row->kind, plot_text(result, "kind")) == 0
-		             ? "the study did not ask for what it shows"
-		             : "only studies of another kind have it");
+		absent(row, result, source->samples, figure);
 		return FIGURE_ABSENT;
 	}
 	struct plot plot = {.result = result, .source = source, .choice = choice};

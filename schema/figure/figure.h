@@ -50,6 +50,7 @@ struct figure_row {
 	const char *table; /* of a result's CSV tables, the one with its numbers; NULL: the CSV of the result */
 	bool sampled;      /* it is drawn from the samples too, not from the result alone */
 	const char *text;  /* one line */
+	const char *needs; /* what a result of its kind may lack; NULL: nothing */
 };
 
 /* The rows, the last one has no name. */

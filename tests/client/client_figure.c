@@ -8,6 +8,7 @@
 #include "tests/support/check.h"
 #include "tests/support/program.h"
 #include "tests/support/raw_http.h"
+#include "tests/support/study_documents.h"
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
@@ -154,7 +155,7 @@ static void wrong_choices_end_with_2_and_what_is_not_there_with_1(void **state)
 	    {"indices", "--cell=1", "cell must be a whole number in [0, 0]", 2},
 	    {"indices", "--axis=hz", "takes no argument", 2},
 	    {"indices", "--output=no", "no output", 2},
-	    {"errors", "--width=400", "has no figure", 1},
+	    {"errors", "--width=400", "kind \"convergence\", not \"sensitivity\"; it has: indices", 1},
 	};
 	char result[32];
 	submit("sensitivity_small", id);
@@ -220,6 +221,57 @@ static void a_report_is_one_page_that_needs_nothing_else(void **state)
 	unlink(study);
 }
 
+static void keep_text(const char *text, char path[32])
+{
+	strcpy(path, "/tmp/pound-test-XXXXXX");
+	FILE *file = fdopen(mkstemp(path), "w");
+	assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+/* Fails unless a report of these files is refused with some words, and prints nothing. */
+static void expect_refused(const char *result, const char *study, const char *words)
+{
+	struct program_outcome outcome = POUND("report", result, study);
+	program_expect(&outcome, 2);
+	assert_string_equal(outcome.out, "");
+	if (!strstr(outcome.err, words))
+		fail_msg("%s", outcome.err);
+	program_free(&outcome);
+}
+
+static void a_report_has_no_other_study(void **state)
+{
+	static const char design[] =
+	    "{\"inputs\": [{\"name\": \"a\", \"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}},"
+	    " {\"name\": \"b\", \"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 1}}],"
+	    " \"design\": {\"rows\": 30}}";
+	char result[32], study[32], other[32], renamed[32], own[32], faulty[32];
+	(void)state;
+	struct program_outcome document = POUND("example", "response"), printed;
+	keep_text(document.out, study);
+	printed = POUND("run", study);
+	keep(&printed, result);
+	char *text = study_documents_with(document.out, "\"seed\": ", "\"seed\":\n 1");
+	keep_text(text, other);
+	free(text);
+	text = study_documents_with(document.out, "\"name\": \"", "\"name\":\n\"My ");
+	keep_text(text, renamed);
+	free(text);
+	keep_text(design, own);
+	keep_text("{\"kind\": \"sensitivty\"}", faulty);
+	expect_refused(result, other, "is not the study of");
+	expect_refused(result, own, "is not the study of");
+	expect_refused(result, faulty, "got \"sensitivty\"");
+	expect_refused("0000000000000000", study, "leave out");
+	// a name and the form of a document are not its meaning
+	printed = POUND("report", result, renamed);
+	program_expect(&printed, 0);
+	assert_non_null(strstr(printed.out, "&quot;My "));
+	program_free(&printed);
+	program_free(&document);
+	unlink(result), unlink(study), unlink(other), unlink(renamed), unlink(own), unlink(faulty);
+}
+
 /* A figure beside a page is what the commands of the page make of an example. */
 static void figure_of_a_page(const char *page, const char *commands, const char *example, const char *figure,
                              const char *path)
@@ -268,6 +320,7 @@ CHECK_MAIN(SERVED(a_figure_of_a_file_has_the_bytes_of_the_server),
            SERVED(a_figure_by_itself_may_style_itself_and_nothing_else),
            SERVED(a_figure_of_a_running_study_is_of_the_rows_so_far),
            SERVED(a_report_is_one_page_that_needs_nothing_else),
+           cmocka_unit_test(a_report_has_no_other_study),
            cmocka_unit_test(the_first_figure_of_the_readme_is_what_its_command_makes),
            cmocka_unit_test(the_figure_of_a_row_is_what_its_command_makes),
            SERVED(wrong_choices_end_with_2_and_what_is_not_there_with_1))

@@ -452,8 +452,11 @@ static void what_is_no_figure_is_refused_with_a_reason(void **state)
 		const char *detail;
 	} cases[] = {
 	    {"nothing", {0}, FIGURE_UNKNOWN, "no figure is called \"nothing\""},
-	    {"indices", {0}, FIGURE_ABSENT, "only studies of another kind"},
+	    {"indices", {0}, FIGURE_ABSENT, "kind \"sensitivity\", not \"response\"; it has: responses"},
 	    {"history", {0}, FIGURE_ABSENT, "no figure \"history\""},
+	    {"heights", {0}, FIGURE_ABSENT, "it is of a row of buildings; it has: responses"},
+	    {"impacts", {0}, FIGURE_ABSENT, "of a row of buildings with contacts; it has: responses"},
+	    {"suite", {0}, FIGURE_ABSENT, "a table of its own (pound motion --periods)"},
 	    {"responses", {.width = "319"}, FIGURE_CHOICE, "width must be a whole number in [320, 2400]"},
 	    {"responses", {.width = "-400"}, FIGURE_CHOICE, "width must be"},
 	    {"responses", {.width = "400x"}, FIGURE_CHOICE, "width must be"},
@@ -528,9 +531,40 @@ static void every_figure_and_argument_stands_in_the_docs(void **state)
 	free(page);
 }
 
+/* What is asked of a study that lacks it, in the words of the study. */
+static void a_figure_that_a_result_has_not_says_what_it_needs(void **state)
+{
+	static const struct {
+		const char *example, *figure, *detail;
+	} cases[] = {
+	    {"unequal_heights", "responses",
+	     "it is of two oscillators, not of a row of buildings; it has: heights, impacts"},
+	    {"sensitivity_small", "swept", "it needs a \"sweep\" over a number; it has: indices"},
+	    {"sensitivity_small", "given", "it needs 30 rows"},
+	    {"sensitivity_small", "widths", "it needs 60 rows"},
+	    {"sensitivity_small", "pairs", "\"order\": \"second\""},
+	    {"floor_spectrum", "history", "the samples of a study with \"histories\": true"},
+	    {"response", "timeline",
+	     "it is drawn from the samples (pound run --samples FILE); it has: responses"},
+	    {"suite", "fragility", "kind \"separation\", not \"response\""},
+	};
+	(void)state;
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct figure figure;
+		struct figure_source source = result_of(example_text(cases[i].example)), alone = source;
+		alone.samples = NULL;
+		assert_int_equal(figure_draw(cases[i].figure, &alone, &(struct figure_choice){0}, &figure),
+		                 FIGURE_ABSENT);
+		if (!strstr(figure.detail, cases[i].detail))
+			fail_msg("%s of %s: %s", cases[i].figure, cases[i].example, figure.detail);
+		source_free(&source);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+	    cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
 	    cmocka_unit_test(ticks_of_any_range_are_few_and_inside),
 	    cmocka_unit_test(the_text_of_a_tick_has_the_digits_it_needs),
 	    cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),
