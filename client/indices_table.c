@@ -355,10 +355,9 @@ static const struct {
 };
 // clang-format on
 
-/* Prints one section of every output, or all; says whether there was one. */
-static bool print_outputs(const struct reading *result, const char *name)
+/* Prints one section of every output, or all. */
+static void print_outputs(const struct reading *result, const char *name)
 {
-	bool any = false;
 	char cell[PATH_SIZE / 4], output[PATH_SIZE / 2];
 	for (int c = 0; c < reading_count(result, "/cells"); c++) {
 		snprintf(cell, sizeof cell, "/cells/%d", c);
@@ -369,10 +368,8 @@ static bool print_outputs(const struct reading *result, const char *name)
 			print_output_head(result, output);
 			for (size_t k = 0; k < sizeof SECTIONS / sizeof SECTIONS[0]; k++)
 				if (reading_has(result, "%s/%s", output, SECTIONS[k].name) &&
-				    (!name || strcmp(name, SECTIONS[k].name) == 0)) {
+				    (!name || strcmp(name, SECTIONS[k].name) == 0))
 					SECTIONS[k].print(result, output);
-					any = true;
-				}
 		}
 		for (int k = 0; reading_has(result, "%s/not_applicable/%d", cell, k); k++) {
 			fputs("\n", stdout);
@@ -382,7 +379,6 @@ static bool print_outputs(const struct reading *result, const char *name)
 			fputs("\n", stdout);
 		}
 	}
-	return any;
 }
 
 /* ---- the design ---- */
@@ -473,13 +469,27 @@ void given_data_print(const struct reading *result)
 	print_outputs(result, NULL);
 }
 
+/* Whether any output of any cell has a section. */
+static bool section_anywhere(const struct reading *result, const char *name)
+{
+	bool is = false, any = false;
+	for (size_t k = 0; k < sizeof SECTIONS / sizeof SECTIONS[0]; k++)
+		is |= strcmp(name, SECTIONS[k].name) == 0;
+	for (int c = 0; is && c < reading_count(result, "/cells"); c++)
+		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++)
+			any |= reading_has(result, "/cells/%d/outputs/%d/%s", c, o, name);
+	return any;
+}
+
 bool indices_print_table(const struct reading *result, const char *table)
 {
+	const bool stopping = strcmp(table, "stopping") == 0 && reading_has(result, "/stopping");
+	if (!stopping && !section_anywhere(result, table))
+		return false;
 	print_partial(result);
-	if (strcmp(table, "stopping") == 0) {
-		if (reading_has(result, "/stopping"))
-			print_stopping(result);
-		return reading_has(result, "/stopping");
-	}
-	return print_outputs(result, table);
+	if (stopping)
+		print_stopping(result);
+	else
+		print_outputs(result, table);
+	return true;
 }

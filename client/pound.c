@@ -139,7 +139,7 @@ static const struct argp_option OPTIONS[] = {
 	{"given",   'g', NULL,     0, "the first file has samples of the inputs as CSV, in place of a study", 0},
 	{"url",     'u', "URL",    0, "URL of the server (default: $POUND_URL or http://127.0.0.1:8437)", 0},
 	{"format",  'f', "FORMAT", 0, "format of the output", 0},
-	{"table",   'T', "NAME",   0, "one table of a sensitivity result:" TABLES "; or all (only --format table); default: a summary (table), inputs (csv)", 0},
+	{"table",   'T', "NAME",   0, "one table of a result, of those that it has:" TABLES "; or all (only --format table); default: a summary (table), the first of its kind (csv)", 0},
 	{"unit",    'U', "UNIT",   0, "unit of accelerations, for files that do not name it: g, cm/s2 or m/s2", 0},
 	{"step",    'd', "S",      0, "time step in s, for files that have accelerations alone", 0},
 	{"row",     'R', "N",      0, "row of the design, from 1 (default: 1)", 0},

@@ -154,21 +154,32 @@ def indices(model, outputs, names=None, order="pound"):
         return json.loads(_command(["indices", "-", file.name], _text(model)))
 
 
-def table(result):
-    """One dict for each cell, output and input of a result with indices, with every column of them.  Of a separation study
-    without inputs: one for each cell, contact of a row and gap, with the probability of pounding."""
+def table(result, name=None):
+    """One dict for each line of a table of a result.
+
+    Default: one for each cell, output and input of a result with indices, with every column of them.  Of a separation study
+    without inputs: one for each cell, contact of a row and gap, with the probability of pounding.  name: another list that
+    outputs have, such as "second_order", or of a separation study "pounding", "gaps", "rules", "fragility" or "return_periods".
+    """
     rows = []
-    for number, cell in enumerate(result.get("cells", [{}])):
-        where = {"cell": number, **cell.get("sweep", {})}
-        if isinstance(cell.get("outputs"), list):
-            for output in cell["outputs"]:
-                rows += [{**where, "output": output["name"], **row} for row in output["inputs"]]
-            continue
-        for needs in cell.get("contacts", [cell]):
-            if "pounding" not in needs:
-                raise Error(f"a result of kind \"{result['kind']}\" has no table of indices or gaps")
-            contact = {"contact": needs["contact"]} if "contact" in needs else {}
-            rows += [{**where, **contact, **row} for row in needs["pounding"]]
+    if name in ("fragility", "return_periods"):
+        for curves in result.get("fragility", []):
+            contact = {"contact": curves["contact"]} if "contact" in curves else {}
+            found = curves.get("curves" if name == "fragility" else name, [])
+            rows += [{**curves["sweep"], **contact, **row} for row in found]
+    else:
+        for number, cell in enumerate(result.get("cells", [{}])):
+            where = {"cell": number, **cell.get("sweep", {})}
+            outputs = cell.get("outputs") if name not in ("pounding", "gaps", "rules") else None
+            if isinstance(outputs, list):
+                for output in outputs:
+                    rows += [{**where, "output": output["name"], **row} for row in output.get(name or "inputs", [])]
+                continue
+            for needs in cell.get("contacts", [cell]):
+                contact = {"contact": needs["contact"]} if "contact" in needs else {}
+                rows += [{**where, **contact, **row} for row in needs.get(name or "pounding", [])]
+    if not rows:
+        raise Error(f"a result of kind \"{result['kind']}\" has no table {name or 'of indices or gaps'} here")
     return rows
 
 

@@ -13,7 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PEAKS = 12 }; /* of a spectrum, the first ones; all are in the JSON */
+enum {
+	PEAKS = 12,       /* of a spectrum, the first ones; all are in the JSON */
+	CSV_COLUMNS = 32, /* of a table by name, the first ones; all are in the CSV */
+	CSV_CELL = 256,
+};
 
 /* The outputs of a cell. */
 static void print_outputs(const struct reading *result, const char *at)
@@ -440,13 +444,70 @@ static bool print_kind(const struct reading *result, const char *kind)
 	return false;
 }
 
-/* One table of a result with indices, or all of it. */
-static bool print_table(const struct reading *result, const char *kind, const char *table)
+/* The heads of CSV; how many of them say what a line is about. */
+static int heads_of(const char *csv, const char *end, char heads[CSV_COLUMNS + 1][CSV_CELL],
+                    const char *names[CSV_COLUMNS + 1], int *n_keys)
 {
-	if (strcmp(table, "all") != 0)
-		return indices_print_table(result, table);
-	if (strcmp(kind, "sensitivity") != 0)
-		return print_kind(result, kind);
+	int n = 0;
+	char sign = ',';
+	for (*n_keys = 0; sign == ',' && n < CSV_COLUMNS; n++) {
+		csv += result_csv_cell(csv, end, heads[n], CSV_CELL, &sign);
+		names[n] = heads[n];
+		bool key = heads[n][0] == '/' || strcmp(heads[n], "contact") == 0;
+		*n_keys += key && *n_keys == n;
+	}
+	names[n] = NULL;
+	return n;
+}
+
+/* A table of CSV, its numbers to a few digits. */
+static void print_csv(const char *csv, const char *end)
+{
+	char heads[CSV_COLUMNS + 1][CSV_CELL], cell[CSV_CELL], sign, *rest;
+	const char *names[CSV_COLUMNS + 1];
+	int n_keys, n = heads_of(csv, end, heads, names, &n_keys);
+	struct table *table = table_open(n_keys > 0 ? n_keys : 1, names);
+	bool head = true;
+	while (csv < end) {
+		int column = 0;
+		do {
+			csv += result_csv_cell(csv, end, cell, sizeof cell, &sign);
+			const double number = *cell ? strtod(cell, &rest) : NAN;
+			if (head || column++ >= n)
+				continue;
+			if (!*cell || !*rest)
+				table_number(table, number);
+			else
+				table_text(table, cell);
+		} while (sign == ',');
+		head = false;
+	}
+	table_print(table, 2);
+	table_close(table);
+}
+
+/* One table of a result by its name. */
+static bool print_named(const struct reading *result, const char *json, size_t length, const char *name)
+{
+	size_t n;
+	if (indices_print_table(result, name))
+		return true;
+	char *csv = command_sure(result_to_csv(json, length, name, &n));
+	if (n > 0)
+		print_csv(csv, csv + n);
+	free(csv);
+	return n > 0;
+}
+
+/* All of a result. */
+static bool print_all(const struct reading *result, const char *kind)
+{
+	if (strcmp(kind, "sensitivity") != 0) {
+		const bool shown = print_kind(result, kind);
+		if (reading_has(result, "/design"))
+			indices_print(result);
+		return shown;
+	}
 	print_head(result, kind);
 	indices_print(result);
 	print_work(result);
@@ -462,9 +523,9 @@ static enum outcome show_table(const char *json, size_t length, const char *tabl
 {
 	struct reading *result = reading_open(json, length);
 	const char *kind = result ? reading_text(result, "/kind") : NULL;
-	// only results with indices have tables by name
-	bool none = kind && table && strcmp(kind, "sensitivity") != 0 && strcmp(kind, "given_data") != 0;
-	bool shown = kind && !none && (table ? print_table(result, kind, table) : print_kind(result, kind));
+	bool shown = kind && (!table                      ? print_kind(result, kind)
+	                      : strcmp(table, "all") == 0 ? print_all(result, kind)
+	                                                  : print_named(result, json, length, table));
 	if (!shown && table && kind)
 		command_complain("this result has no table '%s'", table);
 	else if (!shown)

@@ -171,8 +171,8 @@ static struct layout layout_of(const struct table *table, int indent)
 	return layout;
 }
 
-/* The column behind the last one that fits beside the keys, from `first` on: one does, however wide it is; the table's last one is
- * cut to fit where it is of texts. */
+/* The column behind the last one that fits beside the keys, from `first` on: one does, however wide it is; the first and the table's
+ * last one are cut to fit where they are of texts. */
 static int block_end(const struct table *table, struct layout *layout, int indent, int first)
 {
 	int used = indent, end = first;
@@ -180,8 +180,8 @@ static int block_end(const struct table *table, struct layout *layout, int inden
 		used += layout->width[c] ? layout->width[c] + GAP : 0;
 	for (; end < table->n_columns; end++) {
 		const int left = TABLE_WIDTH - used;
-		if (end == table->n_columns - 1 && !layout->right[end] && left >= TEXT_LEAST &&
-		    left < layout->width[end])
+		const bool cut = end == first || end == table->n_columns - 1;
+		if (cut && !layout->right[end] && left >= TEXT_LEAST && left < layout->width[end])
 			layout->width[end] = left;
 		if (end > first && layout->width[end] > left)
 			break;

@@ -26,8 +26,8 @@ const struct figure_row figure_rows[] = {
 	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level", "it is of a row of buildings with contacts"},
 	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse", "it is drawn from the samples (pound run --samples FILE)"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time", NULL},
-	{"separation", "separation",    " cell contact width ",       NULL,                false, "probability of pounding over the gap, and the gaps that rules ask for", NULL},
-	{"fragility", "separation",     " cell contact width ",       NULL,                false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares", "it needs \"intensity\", the path of a sweep"},
+	{"separation", "separation",    " cell contact width ",       "pounding",          false, "probability of pounding over the gap, and the gaps that rules ask for", NULL},
+	{"fragility", "separation",     " cell contact width ",       "fragility",         false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares", "it needs \"intensity\", the path of a sweep"},
 	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods", "it is drawn from a table of its own (pound motion --periods)"},
 	{0},
 };

@@ -282,29 +282,6 @@ static bool column_shown(const char *name)
 	       strcmp(name, "output.frequency_hz") == 0;
 }
 
-/* The next cell of CSV, unquoted into `cell`; how many bytes it and the sign behind it take. */
-static size_t cell_of(const char *csv, const char *end, char *cell, size_t size, char *sign)
-{
-	const char *at = csv;
-	size_t n = 0;
-	bool quoted = at < end && *at == '"';
-	for (at += quoted; at < end; at++) {
-		if (quoted && *at == '"' && (at + 1 == end || at[1] != '"')) {
-			quoted = false;
-			continue;
-		}
-		at += quoted && *at == '"';
-		if (!quoted && (*at == ',' || *at == '\r'))
-			break;
-		if (n < size - 1)
-			cell[n++] = *at;
-	}
-	cell[n] = '\0';
-	*sign = at < end ? *at : '\r';
-	at += at < end ? (*at == '\r' ? 2 : 1) : 0;
-	return (size_t)(at - csv);
-}
-
 static void put_cell(struct report *report, const char *text, bool head)
 {
 	char number[32], *end;
@@ -328,7 +305,7 @@ static void put_csv(struct report *report, const char *title, const char *csv, s
 		char cell[512], sign = ',';
 		put(report, "<tr>");
 		for (int column = 0; sign != '\r' && at < end; column++) {
-			at += cell_of(at, end, cell, sizeof cell, &sign);
+			at += result_csv_cell(at, end, cell, sizeof cell, &sign);
 			if (head && column < COLUMNS_MOST)
 				shown[column] = column_shown(cell);
 			if (column < COLUMNS_MOST && shown[column])
@@ -340,7 +317,7 @@ static void put_csv(struct report *report, const char *title, const char *csv, s
 	table_end(report);
 }
 
-static void put_table(struct report *report, const char *table, const char *title)
+static bool put_table(struct report *report, const char *table, const char *title)
 {
 	size_t n = 0;
 	char *csv = result_to_csv(report->source->json, report->source->length, table, &n);
@@ -353,19 +330,20 @@ static void put_table(struct report *report, const char *table, const char *titl
 		put(report, "</details>\n");
 	}
 	free(csv);
+	return n > 0;
 }
 
+/* Those that have names, or the one of a kind without. */
 static void put_tables(struct report *report)
 {
+	bool any = false;
 	put(report,
 	    "<h2>Tables</h2>\n<p class=\"muted\">Five digits of each number; all are in the result.</p>\n");
-	if (strcmp(plot_text(report->result, "kind"), "sensitivity") != 0) {
-		put_table(report, NULL, "result");
-		return;
-	}
-#define X(name) put_table(report, #name, #name);
+#define X(name) any |= put_table(report, #name, #name);
 	RESULT_TABLES(X)
 #undef X
+	if (!any)
+		put_table(report, NULL, "result");
 }
 
 /* ---- accuracy, work ---- */

@@ -1,8 +1,9 @@
 /* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
  *
- * Sensitivity: the table that is asked for by name, of all cells and outputs.  Response: one row per cell and signal.
- * Separation: one row per cell and gap.  Convergence: one row per setting, its time beside it.  Floor spectra: one row per frequency. */
+ * Every table that is asked for by name is a list that the result has in many places: of outputs of cells, of cells or the contacts
+ * in them, of sets of fragility curves.  Convergence: one row per setting, its time beside it.  Floor spectra: one row per frequency. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schema/json/json.h"
@@ -27,11 +28,47 @@ static const cJSON *behind(const cJSON *element)
 
 /* ---- lines ---- */
 
-/* A table in the making: first a line of the names of its cells, then lines of their values. */
+/* A table in the making.  All lines are made twice, for their columns and then for their values: a line need not have every column, but
+ * those that it has are in one order. */
 struct lines {
 	struct writer *w;
-	bool header, inside; /* the current line is that of names; it has a cell */
+	char **columns; /* (n) names */
+	int n, room;
+	int next;       /* column of the current line that comes next */
+	bool gathering; /* columns, not values */
+	bool failed;    /* out of memory */
 };
+
+/* The column of a name from the next one on; n: there is none. */
+static int column_of(const struct lines *lines, const char *name)
+{
+	int k = lines->next;
+	while (k < lines->n && strcmp(lines->columns[k], name) != 0)
+		k++;
+	return k;
+}
+
+/* A new column goes behind the one before it in its line. */
+static void column_add(struct lines *lines, const char *name)
+{
+	if (lines->n == lines->room) {
+		const int room = lines->room ? 2 * lines->room : 64;
+		char **columns = realloc(lines->columns, (size_t)room * sizeof *columns);
+		lines->failed = lines->failed || !columns;
+		if (!columns)
+			return;
+		lines->columns = columns;
+		lines->room = room;
+	}
+	char *copy = strdup(name);
+	lines->failed = lines->failed || !copy;
+	if (!copy)
+		return;
+	char **at = &lines->columns[lines->next];
+	memmove(at + 1, at, (size_t)(lines->n - lines->next) * sizeof *at);
+	*at = copy;
+	lines->n++;
+}
 
 static void put_value(struct writer *w, const cJSON *value)
 {
@@ -44,17 +81,30 @@ static void put_value(struct writer *w, const cJSON *value)
 		writer_cell(w, cJSON_IsTrue(value) ? "true" : "false");
 }
 
-/* The next cell: its name behind a prefix, or its value; NULL: it has none. */
+/* Commas up to a column. */
+static void put_until(struct lines *lines, int column)
+{
+	for (int k = lines->next; k < column; k++)
+		writer_raw(lines->w, ",", k > 0);
+}
+
+/* The next cell: its name behind a prefix, and its value; NULL: it has none. */
 static void put(struct lines *lines, const char *prefix, const char *name, const cJSON *value)
 {
 	char text[256];
-	writer_raw(lines->w, ",", lines->inside);
-	lines->inside = true;
 	snprintf(text, sizeof text, "%s%s", prefix, name);
-	if (lines->header)
-		writer_cell(lines->w, text);
-	else
+	const int column = column_of(lines, text);
+	if (lines->gathering) {
+		if (column == lines->n)
+			column_add(lines, text);
+		else
+			lines->next = column;
+	} else {
+		put_until(lines, column + 1);
 		put_value(lines->w, value);
+		lines->next = column;
+	}
+	lines->next++;
 }
 
 /* The scalar members of an object, each a cell. */
@@ -71,19 +121,33 @@ static void put_scalars(struct lines *lines, const cJSON *object, const char *pr
 
 static void put_end(struct lines *lines)
 {
-	writer_raw(lines->w, "\r\n", 2);
-	lines->header = lines->inside = false;
+	if (!lines->gathering) {
+		put_until(lines, lines->n);
+		writer_raw(lines->w, "\r\n", 2);
+	}
+	lines->next = 0;
 }
 
-/* ---- sensitivity ---- */
+static void put_names(struct lines *lines)
+{
+	for (int k = 0; k < lines->n; k++) {
+		writer_raw(lines->w, ",", k > 0);
+		writer_cell(lines->w, lines->columns[k]);
+	}
+	writer_raw(lines->w, "\r\n", lines->n ? 2 : 0);
+}
+
+/* ---- tables by name: what a line of each has ---- */
 
 /* Where a line of a table belongs, and what it is about. */
 struct place {
-	const cJSON *result, *cell, *output;
+	const cJSON *result, *cell;
+	const cJSON *output;  /* of the cell */
+	const cJSON *contact; /* what has the gaps of the cell: one of its contacts, or the cell */
+	const cJSON *set;     /* of fragility curves */
 	const cJSON *element; /* of the table's list */
 	int index;            /* of the element in its list */
 	int point;            /* of the element's curve */
-	int width;            /* the most inputs of a set in this table */
 };
 
 /* An intermediate result says in every line of how many rows it is. */
@@ -114,12 +178,14 @@ static void put_input(struct lines *lines, const struct place *at)
 
 static void put_set(struct lines *lines, const struct place *at)
 {
-	const cJSON *inputs = member(at->element, "inputs");
+	const cJSON *input;
+	int k = 0;
 	put_output(lines, at);
-	for (int k = 0; k < at->width; k++) {
+	cJSON_ArrayForEach(input, member(at->element, "inputs"))
+	{
 		char name[32];
-		snprintf(name, sizeof name, "input_%d", k + 1);
-		put(lines, "", name, cJSON_GetArrayItem(inputs, k));
+		snprintf(name, sizeof name, "input_%d", ++k);
+		put(lines, "", name, input);
 	}
 	put_scalars(lines, at->element, "");
 }
@@ -145,93 +211,6 @@ static void put_point(struct lines *lines, const struct place *at)
 	for (int k = 0; k < 4; k++)
 		put(lines, "", curve[k], cJSON_GetArrayItem(member(at->element, curve[k]), at->point));
 }
-
-/* The lists that are tables, by their names in an output. */
-static const struct table {
-	const char *name;
-	void (*put)(struct lines *lines, const struct place *at);
-	const char *within; /* the list is this member of the one of that name; NULL: that itself */
-	const char *points; /* member of an element with a line for each of its own; NULL: a line an element */
-} tables[] = {
-    {"inputs", put_input, NULL, NULL},
-    {"second_order", put_set, NULL, NULL},
-    {"closed", put_set, NULL, NULL},
-    {"groups", put_group, NULL, NULL},
-    {"ratios", put_variable, "variables", NULL},
-    {"conditional_means", put_point, NULL, "x"},
-};
-
-static const cJSON *list_of(const struct table *table, const cJSON *output)
-{
-	const cJSON *list = member(output, table->name);
-	return table->within ? member(list, table->within) : list;
-}
-
-static int width_of(const struct table *table, const cJSON *cells)
-{
-	int width = 0;
-	const cJSON *cell, *output, *element;
-	cJSON_ArrayForEach(cell, cells) cJSON_ArrayForEach(output, member(cell, "outputs"))
-	    cJSON_ArrayForEach(element, list_of(table, output))
-	{
-		int n = cJSON_GetArraySize(member(element, "inputs"));
-		width = n > width ? n : width;
-	}
-	return width;
-}
-
-/* The lines of one output; before the first of all, their names. */
-static void put_outputs(struct lines *lines, const struct table *table, struct place *at)
-{
-	at->index = 0;
-	cJSON_ArrayForEach(at->element, list_of(table, at->output))
-	{
-		int n = table->points ? cJSON_GetArraySize(member(at->element, table->points)) : 1;
-		for (at->point = 0; at->point < n; at->point++) {
-			if (lines->header) {
-				table->put(lines, at);
-				put_end(lines);
-			}
-			table->put(lines, at);
-			put_end(lines);
-		}
-		at->index++;
-	}
-}
-
-static void put_sensitivity(struct lines *lines, const struct table *table, const cJSON *result)
-{
-	const cJSON *cells = member(result, "cells");
-	struct place at = {.result = result, .width = width_of(table, cells)};
-	cJSON_ArrayForEach(at.cell, cells) cJSON_ArrayForEach(at.output, member(at.cell, "outputs"))
-	    put_outputs(lines, table, &at);
-}
-
-/* Every look at the intervals of a design that grew, and what was to be reached. */
-static void put_look(struct lines *lines, const cJSON *stopping, const cJSON *look, const cJSON *sweep)
-{
-	static const char *const members[] = {"rows", "runs", "half_width", "index", "input", "output"};
-	const cJSON *value;
-	for (int k = 0; k < 6; k++)
-		put(lines, "", members[k], member(look, members[k]));
-	cJSON_ArrayForEach(value, sweep)
-	    put(lines, "", value->string, member(member(look, "sweep"), value->string));
-	put(lines, "asked.", "half_width", member(stopping, "half_width"));
-	put(lines, "asked.", "max_runs", member(stopping, "max_runs"));
-	put(lines, "", "reached", member(stopping, "reached"));
-	put_end(lines);
-}
-
-static void put_stopping(struct lines *lines, const cJSON *result)
-{
-	const cJSON *stopping = member(result, "stopping"), *looks = member(stopping, "looks"), *look;
-	const cJSON *sweep = member(cJSON_GetArrayItem(member(result, "cells"), 0), "sweep");
-	if (looks)
-		put_look(lines, stopping, looks->child, sweep);
-	cJSON_ArrayForEach(look, looks) put_look(lines, stopping, look, sweep);
-}
-
-/* ---- response, convergence, floor spectra ---- */
 
 /* A row of buildings in one line: every storey, floor and contact by its number. */
 static void put_row(struct lines *lines, const cJSON *signal)
@@ -261,11 +240,11 @@ static void put_row(struct lines *lines, const cJSON *signal)
 	}
 }
 
-static void put_signal(struct lines *lines, const cJSON *cell, const cJSON *signal)
+static void put_signal(struct lines *lines, const struct place *at)
 {
 	int index = 1;
-	const cJSON *oscillator;
-	put_scalars(lines, member(cell, "sweep"), "");
+	const cJSON *oscillator, *signal = at->element;
+	put_cell(lines, at);
 	put_scalars(lines, signal, "");
 	cJSON_ArrayForEach(oscillator, member(signal, "oscillators"))
 	{
@@ -275,33 +254,178 @@ static void put_signal(struct lines *lines, const cJSON *cell, const cJSON *sign
 	}
 	put_row(lines, signal);
 	put_scalars(lines, member(signal, "end"), "end.");
+}
+
+/* A list of a cell's gaps. */
+static void put_contact(struct lines *lines, const struct place *at)
+{
+	put_cell(lines, at);
+	if (member(at->contact, "contact"))
+		put(lines, "", "contact", member(at->contact, "contact"));
+	put_scalars(lines, at->element, "");
+}
+
+static void put_needed(struct lines *lines, const struct place *at)
+{
+	put_cell(lines, at);
+	put_scalars(lines, at->contact, "");
+	put_scalars(lines, at->element, "gap_needed.");
+}
+
+static void put_needed_signal(struct lines *lines, const struct place *at)
+{
+	const cJSON index = {.type = cJSON_Number, .valuedouble = at->index};
+	put_contact(lines, at);
+	put(lines, "", "index", &index);
+	put(lines, "", "gap_needed_m", at->element);
+}
+
+static void put_curve(struct lines *lines, const struct place *at)
+{
+	put_scalars(lines, member(at->result, "partial"), "partial.");
+	put_scalars(lines, member(at->set, "sweep"), "");
+	put_scalars(lines, at->set, "");
+	put_scalars(lines, at->element, "");
+}
+
+/* One mean of a response, or the numbers of an output of a study with inputs. */
+static void put_mean(struct lines *lines, const struct place *at)
+{
+	put_cell(lines, at);
+	if (cJSON_IsObject(at->element)) {
+		put_scalars(lines, at->element, "output.");
+		return;
+	}
+	const cJSON name = {.type = cJSON_String, .valuestring = at->element->string};
+	put(lines, "output.", "name", &name);
+	put(lines, "output.", "mean", at->element);
+}
+
+static void put_record(struct lines *lines, const struct place *at)
+{
+	const cJSON *value;
+	put(lines, "", "name", member(at->element, "name"));
+	cJSON_ArrayForEach(value, at->element) if (strcmp(value->string, "name") != 0)
+	    put(lines, "", value->string, value);
+}
+
+/* What has the list of a table. */
+enum owner { OUTPUT, CONTACT, CELL, SET, RESULT };
+
+/* The lists that are tables. */
+static const struct table {
+	const char *name;
+	enum owner owner;
+	void (*put)(struct lines *lines, const struct place *at);
+	const char *list;   /* member of the owner */
+	const char *within; /* the list is this member of that one; NULL: that itself */
+	const char *points; /* member of an element with a line for each of its own; NULL: a line an element */
+	bool whole;         /* no list: a line for that member itself */
+} tables[] = {
+    {"inputs", OUTPUT, put_input, "inputs", NULL, NULL, false},
+    {"second_order", OUTPUT, put_set, "second_order", NULL, NULL, false},
+    {"closed", OUTPUT, put_set, "closed", NULL, NULL, false},
+    {"groups", OUTPUT, put_group, "groups", NULL, NULL, false},
+    {"ratios", OUTPUT, put_variable, "ratios", "variables", NULL, false},
+    {"conditional_means", OUTPUT, put_point, "conditional_means", NULL, "x", false},
+    {"pounding", CONTACT, put_contact, "pounding", NULL, NULL, false},
+    {"gaps", CONTACT, put_contact, "gaps", NULL, NULL, false},
+    {"rules", CONTACT, put_contact, "rules", NULL, NULL, false},
+    {"gap_needed", CONTACT, put_needed, "gap_needed", NULL, NULL, true},
+    {"signals", CONTACT, put_needed_signal, "gap_needed", "signals_m", NULL, false},
+    {"signals", CELL, put_signal, "signals", NULL, NULL, false},
+    {"fragility", SET, put_curve, "curves", NULL, NULL, false},
+    {"return_periods", SET, put_curve, "return_periods", NULL, NULL, false},
+    {"outputs", CELL, put_mean, "outputs", NULL, NULL, false},
+    {"records", RESULT, put_record, "suite", "records", NULL, false},
+};
+
+enum { TABLES = sizeof tables / sizeof tables[0] };
+
+static const cJSON *list_of(const struct table *table, const cJSON *owner)
+{
+	const cJSON *list = member(owner, table->list);
+	return table->within ? member(list, table->within) : list;
+}
+
+/* The lines of one element. */
+static void put_element(struct lines *lines, const struct table *table, struct place *at)
+{
+	int n = table->points ? cJSON_GetArraySize(member(at->element, table->points)) : 1;
+	for (at->point = 0; at->point < n; at->point++) {
+		table->put(lines, at);
+		put_end(lines);
+	}
+	at->index++;
+}
+
+static void put_list(struct lines *lines, const struct table *table, struct place *at, const cJSON *owner)
+{
+	at->index = 0;
+	at->element = list_of(table, owner);
+	if (at->element && table->whole)
+		put_element(lines, table, at);
+	else
+		cJSON_ArrayForEach(at->element, list_of(table, owner)) put_element(lines, table, at);
+}
+
+/* The lists of a cell; a study without sweeps may have them itself. */
+static void put_cell_lists(struct lines *lines, const struct table *table, struct place *at)
+{
+	if (table->owner == CELL)
+		put_list(lines, table, at, at->cell);
+	else if (table->owner == OUTPUT)
+		cJSON_ArrayForEach(at->output, member(at->cell, "outputs")) put_list(lines, table, at, at->output);
+	else if (member(at->cell, "contacts"))
+		cJSON_ArrayForEach(at->contact, member(at->cell, "contacts")) put_list(lines, table, at, at->contact);
+	else {
+		at->contact = at->cell;
+		put_list(lines, table, at, at->cell);
+	}
+}
+
+static void put_table(struct lines *lines, const struct table *table, const cJSON *result)
+{
+	const cJSON *cells = member(result, "cells");
+	struct place at = {.result = result};
+	if (table->owner == RESULT)
+		put_list(lines, table, &at, result);
+	else if (table->owner == SET)
+		cJSON_ArrayForEach(at.set, member(result, "fragility")) put_list(lines, table, &at, at.set);
+	else if (cells)
+		cJSON_ArrayForEach(at.cell, cells) put_cell_lists(lines, table, &at);
+	else {
+		at.cell = result;
+		put_cell_lists(lines, table, &at);
+	}
+}
+
+/* Every look at the intervals of a design that grew, and what was to be reached. */
+static void put_look(struct lines *lines, const cJSON *stopping, const cJSON *look, const cJSON *sweep)
+{
+	static const char *const members[] = {"rows", "runs", "half_width", "index", "input", "output"};
+	const cJSON *value;
+	for (int k = 0; k < 6; k++)
+		put(lines, "", members[k], member(look, members[k]));
+	cJSON_ArrayForEach(value, sweep)
+	    put(lines, "", value->string, member(member(look, "sweep"), value->string));
+	put(lines, "asked.", "half_width", member(stopping, "half_width"));
+	put(lines, "asked.", "max_runs", member(stopping, "max_runs"));
+	put(lines, "", "reached", member(stopping, "reached"));
 	put_end(lines);
 }
 
-static void put_signals(struct lines *lines, const cJSON *cell)
+static void put_stopping(struct lines *lines, const cJSON *result)
 {
-	const cJSON *signal;
-	cJSON_ArrayForEach(signal, member(cell, "signals"))
-	{
-		if (lines->header)
-			put_signal(lines, cell, signal);
-		put_signal(lines, cell, signal);
-	}
+	const cJSON *stopping = member(result, "stopping"), *looks = member(stopping, "looks"), *look;
+	const cJSON *sweep = member(cJSON_GetArrayItem(member(result, "cells"), 0), "sweep");
+	cJSON_ArrayForEach(look, looks) put_look(lines, stopping, look, sweep);
 }
 
-/* The probability to pound with each gap, of the cell or of a contact in it. */
-static void put_gaps(struct lines *lines, const cJSON *cell, const cJSON *needs)
-{
-	const cJSON *gap;
-	cJSON_ArrayForEach(gap, member(needs, "pounding")) for (int header = lines->header; header >= 0; header--)
-	{
-		put_scalars(lines, member(cell, "sweep"), "");
-		if (member(needs, "contact"))
-			put(lines, "", "contact", member(needs, "contact"));
-		put_scalars(lines, gap, "");
-		put_end(lines);
-	}
-}
+/* ---- convergence, floor spectra ---- */
+
+static const char TRIALS[] =
+    "trials"; /* a table that has no name for clients: all of a study of convergence */
 
 static void put_trial(struct lines *lines, const cJSON *row, const cJSON *time)
 {
@@ -313,7 +437,6 @@ static void put_trial(struct lines *lines, const cJSON *row, const cJSON *time)
 static void put_trials(struct lines *lines, const cJSON *rows, const cJSON *times)
 {
 	const cJSON *row, *time = first(times);
-	put_trial(lines, first(rows), time);
 	cJSON_ArrayForEach(row, rows)
 	{
 		put_trial(lines, row, time);
@@ -363,39 +486,50 @@ static void put_spectra(struct writer *w, const cJSON *result)
 	}
 }
 
-static const struct table *table_named(const char *name)
+/* The tables of that name, of which a result has one at most. */
+static void put_named(struct lines *lines, const char *name, const cJSON *result)
 {
-	for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++)
-		if (strcmp(tables[i].name, name) == 0)
-			return &tables[i];
-	return NULL;
+	if (strcmp(name, "stopping") == 0)
+		put_stopping(lines, result);
+	if (strcmp(name, TRIALS) == 0 && cJSON_IsArray(member(result, "rows")))
+		put_trials(lines, member(result, "rows"), member(member(result, "timing"), "run_cpu_s"));
+	for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++)
+		if (strcmp(tables[k].name, name) == 0)
+			put_table(lines, &tables[k], result);
 }
 
-/* Every kind of result by the members that it has. */
-static void put_result(struct lines *lines, const cJSON *result)
+/* A table by its name: once for its columns, and once more for its values.  false: out of memory. */
+static bool put_lines(struct writer *w, const char *name, const cJSON *result)
 {
-	const cJSON *cells = member(result, "cells"), *cell, *contact;
-	if (cJSON_IsArray(member(result, "rows")))
-		put_trials(lines, member(result, "rows"), member(member(result, "timing"), "run_cpu_s"));
-	else if (cJSON_IsArray(member(result, "spectra")))
-		put_spectra(lines->w, result);
-	else if (cJSON_IsArray(member(result, "signals")))
-		put_signals(lines, result);
-	else if (cells && member(first(cells), "pounding"))
-		cJSON_ArrayForEach(cell, cells) put_gaps(lines, cell, cell);
-	else if (cells && member(first(member(first(cells), "contacts")), "pounding"))
-		cJSON_ArrayForEach(cell, cells) cJSON_ArrayForEach(contact, member(cell, "contacts"))
-		    put_gaps(lines, cell, contact);
-	else if (cells && member(first(cells), "signals"))
-		cJSON_ArrayForEach(cell, cells) put_signals(lines, cell);
-	else
-		put_sensitivity(lines, &tables[0], result);
+	struct lines lines = {.w = w, .gathering = true};
+	put_named(&lines, name, result);
+	lines.gathering = false;
+	if (!lines.failed) {
+		put_names(&lines);
+		put_named(&lines, name, result);
+	}
+	for (int k = 0; k < lines.n; k++)
+		free(lines.columns[k]);
+	free(lines.columns);
+	return !lines.failed;
+}
+
+/* The first table of a result of any kind, by the members that it has. */
+static bool put_first(struct writer *w, const cJSON *result)
+{
+	static const char *const names[] = {TRIALS, "pounding", "signals", "inputs"};
+	bool made = true;
+	if (cJSON_IsArray(member(result, "spectra")))
+		put_spectra(w, result);
+	for (int k = 0; k < 4 && made && w->length == 0; k++)
+		made = put_lines(w, names[k], result);
+	return made;
 }
 
 /* A result as CSV (RFC 4180).
  *
  * Given    json      (json_length)  -  the bytes of result_to_json
- *          table     -              -  one of RESULT_TABLES; NULL: the first, or whatever other kinds have
+ *          table     -              -  one of RESULT_TABLES; NULL: the first of its kind
  * Returns  value     (length)       -  CSV, empty when the result has no such table; NULL: out of memory
  * Memory   allocates; the caller frees
  *
@@ -405,18 +539,46 @@ char *result_to_csv(const char *json, size_t json_length, const char *table, siz
 {
 	struct json_fault fault;
 	struct writer w;
-	struct lines lines = {.w = &w, .header = true};
 	*length = 0;
 	cJSON *result = json_parse(json, json_length, &fault);
 	if (!result)
 		return NULL;
 	writer_init(&w);
-	if (!table)
-		put_result(&lines, result);
-	else if (strcmp(table, "stopping") == 0)
-		put_stopping(&lines, result);
-	else if (table_named(table))
-		put_sensitivity(&lines, table_named(table), result);
+	bool made = table ? put_lines(&w, table, result) : put_first(&w, result);
 	cJSON_Delete(result);
-	return writer_take(&w, length);
+	char *csv = writer_take(&w, length);
+	if (!made) {
+		free(csv);
+		return NULL;
+	}
+	return csv;
+}
+
+/* The next cell of such a table, unquoted.
+ *
+ * Given    csv, end   (end - csv)  -  from the start of a cell on
+ * Returns  cell       (size)       -  its text, cut where it does not fit
+ *          sign       -            -  what follows: a comma, or a carriage return behind the last of its line
+ *          value      -            -  bytes that both take
+ */
+size_t result_csv_cell(const char *csv, const char *end, char *cell, size_t size, char *sign)
+{
+	const char *at = csv;
+	size_t n = 0;
+	bool quoted = at < end && *at == '"';
+	for (at += quoted; at < end; at++) {
+		if (quoted && *at == '"' && (at + 1 == end || at[1] != '"')) {
+			quoted = false;
+			continue;
+		}
+		at += quoted && *at == '"';
+		if (!quoted && (*at == ',' || *at == '\r'))
+			break;
+		if (n < size - 1)
+			cell[n++] = *at;
+	}
+	cell[n] = '\0';
+	*sign = at < end ? *at : '\r';
+	at += at < end ? (*at == '\r' ? 2 : 1) : 0;
+	return (size_t)(at - csv);
 }

@@ -25,13 +25,19 @@ struct writer;
 void result_estimate(struct writer *w, const char *name, const struct pound_estimate *estimate);
 void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves);
 
-/* Tables of a sensitivity result: lists of every output of every cell, and the looks of a design that grew. */
+/* Tables of results, each of those that have it: lists of every output with inputs, and the looks of a design that grew; gaps of every
+ * cell or contact, fragility curves; signals, means and recorded ground motions. */
+// clang-format off
 #define RESULT_TABLES(X) \
-	X(inputs) X(second_order) X(closed) X(groups) X(ratios) X(conditional_means) X(stopping)
+	X(inputs) X(second_order) X(closed) X(groups) X(ratios) X(conditional_means) X(stopping) \
+	X(pounding) X(gaps) X(rules) X(gap_needed) X(fragility) X(return_periods) X(signals) X(outputs) X(records)
+// clang-format on
 
 /* The same result as CSV, from the bytes of result_to_json: the table of that name, empty when it has none; NULL: one row
- * per cell, output and input of a sensitivity study, per cell and signal of a response, ... */
+ * per cell, output and input of a sensitivity study, per cell and signal of a response, per cell and gap of a separation, ... */
 char *result_to_csv(const char *json, size_t json_length, const char *table, size_t *length);
+size_t result_csv_cell(const char *csv, const char *end, char *cell, size_t size,
+                       char *sign); /* its next cell; the bytes of it and of the sign behind it */
 
 /* Whether a study has samples: its runs, the histories that it asks for, or the contacts of its responses; and whether they are made
  * by running it once more: the latter two. */

@@ -410,6 +410,41 @@ static void one_table_of_a_result_is_shown_by_its_name(void **state)
 	free(study);
 }
 
+static void every_table_of_a_separation_is_shown_by_its_name(void **state)
+{
+	static const struct {
+		const char *table, *shown, *csv;
+	} tables[] = {{"pounding", "probability", ",gap_m,probability,low,high\r\n"},
+	              {"gaps", "low_m", ",probability,gap_m,low_m,high_m\r\n"},
+	              {"rules", "double_difference", ",name,what,gap_m,over_mean,probability,low,high\r\n"},
+	              {"gap_needed", "gap_needed.largest_m", ",runs,runs_failed,displacement_left_m,"},
+	              {"fragility", "dispersion_high", "intensity,annual_rate_beyond,gap_m,median,"},
+	              {"return_periods", "2475", "intensity,annual_rate_beyond,return_period_years,gap_m,"},
+	              {"signals", "gap_needed_m", ",index,gap_needed_m\r\n"},
+	              {"outputs", "peak_displacement_free_m", ",output.name,output.mean\r\n"},
+	              {"records", "made 20", "name,index,samples,time_step_s,"}};
+	(void)state;
+	for (size_t k = 0; k < sizeof tables / sizeof tables[0]; k++) {
+		struct program_outcome shown =
+		    POUND("run", "--format", "table", "--table", tables[k].table, "schema/examples/separation.json");
+		struct program_outcome csv =
+		    POUND("run", "--format", "csv", "--table", tables[k].table, "schema/examples/separation.json");
+		program_expect(&shown, 0);
+		program_expect(&csv, 0);
+		if (!strstr(shown.out, tables[k].shown) || !strstr(csv.out, tables[k].csv))
+			fail_msg("%s shows\n%s\n%s", tables[k].table, shown.out, csv.out);
+		for (const char *line = shown.out, *end; (end = strchr(line, '\n')); line = end + 1)
+			assert_true(end - line <= 80);
+		program_free(&shown);
+		program_free(&csv);
+	}
+	struct program_outcome other =
+	    POUND("run", "--format", "table", "--table", "inputs", "schema/examples/separation.json");
+	program_expect(&other, 1);
+	assert_string_equal(other.out, "");
+	program_free(&other);
+}
+
 static void csv_has_as_many_cells_in_every_row(void **state)
 {
 	(void)state;
@@ -598,6 +633,7 @@ CHECK_MAIN(SERVED(every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_
            cmocka_unit_test(a_table_without_a_name_is_a_summary_of_one_screen),
            cmocka_unit_test(the_papers_study_ends_in_one_screen_and_a_report),
            cmocka_unit_test(one_table_of_a_result_is_shown_by_its_name),
+           cmocka_unit_test(every_table_of_a_separation_is_shown_by_its_name),
            cmocka_unit_test(csv_has_as_many_cells_in_every_row),
            cmocka_unit_test(ctrl_c_stops_a_run_without_a_result),
            cmocka_unit_test(a_file_that_cannot_be_written_is_reported_before_the_study_runs),

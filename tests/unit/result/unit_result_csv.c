@@ -106,7 +106,7 @@ static void lists_of_sets_have_a_column_for_each_member_of_the_largest(void **st
 	          "/contact/gap_m,output.name,input_1,input_2,input_3,S_closed\r\n"
 	          "0.1,impulse,a,,,2\r\n0.1,impulse,a,b,\"c,d\",\r\n");
 	tabulates(json, "inputs",
-	          "/contact/gap_m,output.name,output.mean,name,S1\r\n0.1,impulse,1,a,1\r\n0.1,other,a,1\r\n");
+	          "/contact/gap_m,output.name,output.mean,name,S1\r\n0.1,impulse,1,a,1\r\n0.1,other,,a,1\r\n");
 }
 
 static void ratios_and_curves_are_tables_of_their_own(void **state)
@@ -149,7 +149,7 @@ static void every_row_of_a_partial_result_says_of_how_many_rows_it_is(void **sta
 	          "partial.rows,partial.rows_most,/contact/gap_m,output.name,input_1,S_closed\r\n"
 	          "30,90,0.1,impulse,a,2\r\n");
 	becomes(json, "partial.rows,partial.rows_most,/contact/gap_m,output.name,output.mean,name,S1\r\n"
-	              "30,90,0.1,impulse,1,a,1\r\n30,90,0.1,other,a,1\r\n");
+	              "30,90,0.1,impulse,1,a,1\r\n30,90,0.1,other,,a,1\r\n");
 }
 
 static void a_table_that_a_result_has_not_is_empty(void **state)
@@ -161,6 +161,83 @@ static void a_table_that_a_result_has_not_is_empty(void **state)
 		tabulates("{" CELL("\"inputs\": []") "}", tables[k], "");
 }
 
+/* gaps of a cell or contact */
+#define NEEDS(gap)                                                                                      \
+	"\"gap_needed\": {\"runs\": 2, \"mean_m\": " gap ", \"signals_m\": [" gap ", 0.5]}, \"pounding\": " \
+	"[{\"gap_m\": 0, \"probability\": 1}], \"gaps\": [{\"probability\": 0.5, \"gap_m\": " gap           \
+	", \"note\": \"why\"}], \"correlation\": 0.25, \"rules\": [{\"name\": \"srss\", \"gap_m\": 3}]"
+
+static void every_list_of_a_study_of_separation_is_a_table(void **state)
+{
+	(void)state;
+	static const char pair[] =
+	    "{\"kind\": \"separation\", \"suite\": {\"records\": [{\"index\": 0, \"factor\": 2}, {\"index\": 1, "
+	    "\"name\": \"b\", \"factor\": 3}]}, \"cells\": [{\"sweep\": {\"/contact/gap_m\": 0.1}, \"runs\": "
+	    "2, " NEEDS(
+	        "0.75") ", \"outputs\": {\"impulse\": 1.5, \"force_amplification\": null}}], \"fragility\": "
+	                "[{\"intensity\": \"/x\", \"sweep\": {}, \"curves\": [{\"gap_m\": 0.25, \"median\": 2}], "
+	                "\"return_periods\": [{\"return_period_years\": 475, \"gap_m\": 4}]}]}";
+	becomes(pair, "/contact/gap_m,gap_m,probability\r\n0.1,0,1\r\n");
+	tabulates(pair, "pounding", "/contact/gap_m,gap_m,probability\r\n0.1,0,1\r\n");
+	tabulates(pair, "gaps", "/contact/gap_m,probability,gap_m\r\n0.1,0.5,0.75\r\n");
+	tabulates(pair, "rules", "/contact/gap_m,name,gap_m\r\n0.1,srss,3\r\n");
+	tabulates(pair, "gap_needed",
+	          "/contact/gap_m,runs,correlation,gap_needed.runs,gap_needed.mean_m\r\n0.1,2,0.25,2,0.75\r\n");
+	tabulates(pair, "signals", "/contact/gap_m,index,gap_needed_m\r\n0.1,0,0.75\r\n0.1,1,0.5\r\n");
+	tabulates(pair, "outputs",
+	          "/contact/gap_m,output.name,output.mean\r\n0.1,impulse,1.5\r\n0.1,force_amplification,\r\n");
+	tabulates(pair, "fragility", "intensity,gap_m,median\r\n/x,0.25,2\r\n");
+	tabulates(pair, "return_periods", "intensity,return_period_years,gap_m\r\n/x,475,4\r\n");
+	tabulates(pair, "records", "name,index,factor\r\n,0,2\r\nb,1,3\r\n");
+}
+
+static void each_contact_of_a_row_has_lines_of_its_own(void **state)
+{
+	(void)state;
+	static const char row[] = "{\"cells\": [{\"sweep\": {}, \"contacts\": [{\"contact\": 0, " NEEDS(
+	    "0.75") "}, {\"contact\": 1, " NEEDS("0.875") "}]}], \"fragility\": [{\"contact\": 1, \"intensity\": "
+	                                                  "\"/x\", \"sweep\": {\"/a\": 1}, \"curves\": "
+	                                                  "[{\"gap_m\": "
+	                                                  "0.25}]}]}";
+	becomes(row, "contact,gap_m,probability\r\n0,0,1\r\n1,0,1\r\n");
+	tabulates(row, "gaps", "contact,probability,gap_m\r\n0,0.5,0.75\r\n1,0.5,0.875\r\n");
+	tabulates(row, "gap_needed",
+	          "contact,correlation,gap_needed.runs,gap_needed.mean_m\r\n0,0.25,2,0.75\r\n1,0.25,2,0.875\r\n");
+	tabulates(row, "signals",
+	          "contact,index,gap_needed_m\r\n0,0,0.75\r\n0,1,0.5\r\n1,0,0.875\r\n1,1,0.5\r\n");
+	tabulates(row, "fragility", "/a,contact,intensity,gap_m\r\n1,1,/x,0.25\r\n");
+}
+
+static void a_line_that_lacks_a_column_leaves_it_empty(void **state)
+{
+	(void)state;
+	static const char json[] =
+	    "{\"cells\": [{\"outputs\": [{\"name\": \"peak_drift_m\", \"building\": 0, \"storey\": 1, \"mean\": "
+	    "2, "
+	    "\"inputs\": [{\"S1\": 3}]}, {\"name\": \"gap_needed_m\", \"contact\": 4, \"mean\": 5, \"inputs\": "
+	    "[{\"S1\": 6}]}, {\"name\": \"contact_count\", \"mean\": 7, \"inputs\": [{\"S1\": 8}]}]}]}";
+	becomes(json, "output.name,output.contact,output.building,output.storey,output.mean,S1\r\n"
+	              "peak_drift_m,,0,1,2,3\r\ngap_needed_m,4,,,5,6\r\ncontact_count,,,,7,8\r\n");
+	tabulates(json, "outputs",
+	          "output.name,output.contact,output.building,output.storey,output.mean\r\n"
+	          "peak_drift_m,,0,1,2\r\ngap_needed_m,4,,,5\r\ncontact_count,,,,7\r\n");
+}
+
+static void a_cell_is_read_back_as_it_was_written(void **state)
+{
+	(void)state;
+	static const char csv[] = "a,\"b,\"\"c\"\"\",\r\n";
+	static const char *const wanted[] = {"a", "b,\"c\"", ""};
+	const char *at = csv, *end = csv + sizeof csv - 1;
+	for (int k = 0; k < 3; k++) {
+		char cell[16], sign;
+		at += result_csv_cell(at, end, cell, sizeof cell, &sign);
+		assert_string_equal(cell, wanted[k]);
+		assert_int_equal(sign, k < 2 ? ',' : '\r');
+	}
+	assert_ptr_equal(at, end);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(error_estimates_stand_by_their_output_and_input),
            cmocka_unit_test(shares_of_the_excitation_stand_by_their_output),
@@ -170,4 +247,8 @@ CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(every_look_of_a_design_that_grew_is_a_row_whatever_it_found),
            cmocka_unit_test(every_row_of_a_partial_result_says_of_how_many_rows_it_is),
            cmocka_unit_test(a_table_that_a_result_has_not_is_empty),
+           cmocka_unit_test(every_list_of_a_study_of_separation_is_a_table),
+           cmocka_unit_test(each_contact_of_a_row_has_lines_of_its_own),
+           cmocka_unit_test(a_line_that_lacks_a_column_leaves_it_empty),
+           cmocka_unit_test(a_cell_is_read_back_as_it_was_written),
            cmocka_unit_test(what_is_no_result_gives_no_table))
