@@ -161,7 +161,31 @@ static void print_tables(int n, const struct shown *shown, const struct periods 
 	table_close(table);
 }
 
-/* `pound record FILE...`: what was read, its measures, and with --periods its response spectrum.
+/* One file and its spectra; what is wrong with it is reported. */
+static enum outcome take_file(const struct options *options, const struct periods *periods,
+                              struct shown *shown)
+{
+	const enum outcome read = read_file(options, shown);
+	shown->psa = command_sure(calloc((size_t)periods->n + 1, sizeof *shown->psa));
+	shown->fine = command_sure(calloc((size_t)periods->n + 1, sizeof *shown->fine));
+	if (read == OUTCOME_OK && periods->n &&
+	    (motion_spectrum(&shown->record, periods, shown->psa) != POUND_OK ||
+	     motion_spectrum_finer(&shown->record, periods, shown->fine) != POUND_OK)) {
+		command_complain("%s: the response spectrum cannot be computed", shown->path);
+		return OUTCOME_FAILED;
+	}
+	return read;
+}
+
+static void free_file(struct shown *shown)
+{
+	record_free(&shown->record);
+	free(shown->psa);
+	free(shown->fine);
+}
+
+/* `pound record FILE...`: what was read, its measures, and with --periods its response spectrum.  Files that are no records are reported,
+ * and the others shown.
  *
  * Returns  value   OUTCOME_USAGE: a file is no record
  * Test     client_record: files_are_shown_with_their_measures
@@ -175,28 +199,24 @@ enum outcome record_show(const struct options *options)
 	}
 	struct shown *shown = command_sure(calloc((size_t)options->n_files, sizeof *shown));
 	enum outcome outcome = OUTCOME_OK;
+	int n = 0;
 	for (int i = 0; i < options->n_files; i++) {
-		shown[i].path = options->files[i];
-		shown[i].psa = command_sure(calloc((size_t)periods.n + 1, sizeof *shown[i].psa));
-		shown[i].fine = command_sure(calloc((size_t)periods.n + 1, sizeof *shown[i].fine));
-		const enum outcome read = read_file(options, &shown[i]);
-		outcome = read == OUTCOME_OK ? outcome : read;
-		if (read == OUTCOME_OK && periods.n &&
-		    (motion_spectrum(&shown[i].record, &periods, shown[i].psa) != POUND_OK ||
-		     motion_spectrum_finer(&shown[i].record, &periods, shown[i].fine) != POUND_OK)) {
-			command_complain("%s: the response spectrum cannot be computed", shown[i].path);
-			outcome = OUTCOME_FAILED;
-		}
+		shown[n] = (struct shown){.path = options->files[i]};
+		const enum outcome taken = take_file(options, &periods, &shown[n]);
+		outcome = taken == OUTCOME_OK ? outcome : taken;
+		if (taken == OUTCOME_OK)
+			n++;
+		else
+			free_file(&shown[n]);
 	}
-	if (outcome == OUTCOME_OK && strcmp(options->format, "json") == 0)
-		print_json(options->n_files, shown, &periods);
-	else if (outcome == OUTCOME_OK)
-		print_tables(options->n_files, shown, &periods, strcmp(options->format, "csv") == 0);
-	for (int i = 0; i < options->n_files; i++) {
-		record_free(&shown[i].record);
-		free(shown[i].psa);
-		free(shown[i].fine);
-	}
+	if (n > 0 && strcmp(options->format, "json") == 0)
+		print_json(n, shown, &periods);
+	else if (n > 0)
+		print_tables(n, shown, &periods, strcmp(options->format, "csv") == 0);
+	if (outcome != OUTCOME_OK && options->n_files > 1)
+		command_complain("%d of %d files are not shown", options->n_files - n, options->n_files);
+	for (int i = 0; i < n; i++)
+		free_file(&shown[i]);
 	free(shown);
 	return outcome;
 }

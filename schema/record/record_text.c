@@ -206,7 +206,7 @@ bool record_text_samples(struct record_text *text, int width, int expected, stru
 		if (!line_samples(text, width, expected, record))
 			return false;
 	if (record->n < expected) {
-		record_text_complain(text, -1,
+		record_text_complain(text, 0,
 		                     "the header announces %d samples, but the file ends after %d: it is truncated; "
 		                     "get the complete file, or correct the header",
 		                     expected, record->n);
@@ -264,7 +264,8 @@ double record_unit_chosen(struct record_text *text, const char **name)
 	const double factor = unit ? record_unit(unit, name) : 0;
 	if (!unit)
 		record_text_complain(
-		    text, -1, "the file does not name the unit of its accelerations: specify g, cm/s2 or m/s2");
+		    text, -1,
+		    "the file does not name the unit of its accelerations: give `unit`, one of g, cm/s2 and m/s2");
 	else if (factor == 0)
 		record_text_complain(text, -1, "the unit must be g, cm/s2 or m/s2, got `%.40s'", unit);
 	return factor;

@@ -54,7 +54,6 @@ static void what_is_no_record_is_refused(void **state)
 	program_expect(&refused, 2);
 	assert_non_null(strstr(refused.err, "uneven.csv"));
 	assert_non_null(strstr(refused.err, "line 9, column 1"));
-	assert_string_equal(refused.out, "");
 	program_free(&refused);
 	refused = POUND("record", FILES "nothing.AT2");
 	program_expect(&refused, 1);
@@ -67,6 +66,32 @@ static void what_is_no_record_is_refused(void **state)
 	program_expect(&refused, 2);
 	assert_non_null(strstr(refused.err, "`pound record' shows it"));
 	program_free(&refused);
+}
+
+static void good_files_are_shown_beside_all_bad_ones(void **state)
+{
+	static const char *const formats[] = {"table", "csv", "json"};
+	(void)state;
+	for (int k = 0; k < 3; k++) {
+		struct program_outcome shown =
+		    POUND("record", "--format", formats[k], "--periods", "1", FILES "uneven.csv", FILES "esm.ASC",
+		          FILES "cut_off.AT2", FILES "nga_west2.AT2", FILES "velocity.VT2");
+		program_expect(&shown, 2);
+		assert_non_null(strstr(shown.out, "esm.ASC"));
+		assert_non_null(strstr(shown.out, "west2.AT2"));
+		assert_null(strstr(shown.out, "uneven"));
+		assert_null(strstr(shown.out, "cut_off"));
+		assert_non_null(strstr(shown.err, "line 9, column 1"));
+		assert_non_null(strstr(shown.err, "cut_off.AT2: 1 fault"));
+		assert_non_null(strstr(shown.err, "line 12: the header"));
+		assert_non_null(strstr(shown.err, "velocity.VT2: 1 fault"));
+		assert_non_null(strstr(shown.err, "3 of 5 files are not shown"));
+		program_free(&shown);
+	}
+	struct program_outcome none = POUND("record", FILES "uneven.csv", FILES "nothing.AT2");
+	program_expect(&none, 1);
+	assert_string_equal(none.out, "");
+	program_free(&none);
 }
 
 static void motions_of_a_study_are_written_in_every_form(void **state)
@@ -99,4 +124,5 @@ static void motions_of_a_study_are_written_in_every_form(void **state)
 CHECK_MAIN(cmocka_unit_test(files_are_shown_with_their_measures),
            cmocka_unit_test(a_short_period_has_the_peak_of_a_jump),
            cmocka_unit_test(what_is_no_record_is_refused),
+           cmocka_unit_test(good_files_are_shown_beside_all_bad_ones),
            cmocka_unit_test(motions_of_a_study_are_written_in_every_form))

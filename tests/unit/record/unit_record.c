@@ -99,7 +99,7 @@ static void what_cannot_be_read_is_refused_by_line_and_column(void **state)
 	    {"counts.V0", "line", "raw counts (V0)", {0}},
 	    {"three_channels.V2c", "", "the file has 3 channels with accelerations: choose one, 1 to 3", {0}},
 	    {"three_channels.V2c", "", "no channel 4: the file has 3", {.channel = 4}},
-	    {"cut_off.AT2", "", "the header announces 43 samples, but the file ends after 40", {0}},
+	    {"cut_off.AT2", "line 12", "the header announces 43 samples, but the file ends after 40", {0}},
 	    {"uneven.csv", "line 9, column 1", "expected 0.035 s, got 0.039 s", {0}},
 	    {"decimal_comma.csv", "line 2, column 2", "decimal numbers need a point", {0}},
 	    {"eight_in_a_line.dat", "line 1", "has 8 numbers; expected a time", {0}},
