@@ -74,7 +74,7 @@ static void look_at_masses(struct warnings *all, const struct pound_study *study
 	}
 	for (int i = 0; i < bodies_of(study); i++) {
 		char pointer[48];
-		snprintf(pointer, sizeof pointer, "/scene%s", paths[i]);
+		snprintf(pointer, sizeof pointer, "/scene%.39s", paths[i]);
 		if (!is_wall(study, i) && low[i] == 1 && high[i] == 1 && most >= MASSES_APART)
 			warn(all, pointer, "is 1 kg beside %.6g kg: was it left out?", most);
 	}
