@@ -11,7 +11,7 @@
 #include "tests/support/service.h"
 
 enum {
-	ROWS = 30000, /* of the study: 15 s of one core */
+	ROWS = 90000, /* of the study: 12 s of one core */
 	SIGNALS = 5,
 	RUNS = 5 * SIGNALS * ROWS,
 	START_S = 60, /* until the nodes are idle, or the groups connected */
@@ -105,7 +105,7 @@ static int teardown(void **state)
 }
 
 /* Waits until so many lines of the program's messages say that a group is connected. */
-static void groups_wait(const char *log, int n)
+static void connections_wait(const char *log, int n)
 {
 	const double start = groups_now();
 	for (int connected = 0; connected < n; usleep(10000)) {
@@ -164,7 +164,7 @@ static void four_groups_by_srun_of_slurm(void **state)
 	(void)state;
 	double start = groups_now();
 	pid_t pid = run_start(world.launcher, "4");
-	groups_wait(world.err, 4);
+	connections_wait(world.err, 4);
 	assert_int_equal(program_end(pid), 0);
 	run_check("four groups by srun", start);
 	nodes_wait();
@@ -175,7 +175,7 @@ static void a_killed_node_of_slurm_costs_its_blocks_only(void **state)
 	(void)state;
 	double start = groups_now();
 	pid_t pid = run_start(world.launcher, "4");
-	groups_wait(world.err, 4);
+	connections_wait(world.err, 4);
 	node_kill();
 	assert_int_equal(program_end(pid), 0);
 	run_check("four groups by srun, one node killed", start);
@@ -201,7 +201,7 @@ static void a_batch_job_of_slurm_goes_on_without_a_node(void **state)
 	double start = groups_now();
 	snprintf(line, sizeof line, "sbatch -D / --no-kill -N 4 -o /dev/null %s >/dev/null", script);
 	assert_int_equal(system(line), 0);
-	groups_wait(world.err, 4);
+	connections_wait(world.err, 4);
 	node_kill();
 	while (system("[ -z \"$(squeue -h -t R,PD)\" ]") != 0)
 		usleep(100000);
@@ -221,7 +221,7 @@ static void a_server_goes_on_without_a_node_of_slurm(void **state)
 	unsetenv("POUNDD_LAUNCHERS");
 	double start = groups_now();
 	service_submit(service, world.document, id);
-	groups_wait(service->log, 4);
+	connections_wait(service->log, 4);
 	node_kill();
 	assert_true(service_wait(service, id, "succeeded", 0));
 	struct service_bytes bytes = service_bytes(service, id);
@@ -244,13 +244,13 @@ static void ranks_of_mpi_by_slurm(void **state)
 		skip();
 	double start = groups_now();
 	pid_t pid = run_start(world.ranks, "1");
-	groups_wait(world.err, 1);
+	connections_wait(world.err, 1);
 	assert_int_equal(program_end(pid), 0);
 	run_check("a group of four ranks by srun --mpi=pmix", start);
 	nodes_wait();
 	start = groups_now();
 	pid = run_start(world.ranks, "1");
-	groups_wait(world.err, 1);
+	connections_wait(world.err, 1);
 	node_kill();
 	assert_int_equal(program_end(pid), 0);
 	run_check("a group of four ranks, one node killed", start);

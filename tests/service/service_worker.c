@@ -17,13 +17,13 @@
 enum {
 	SIGNALS = 5,
 	SEED = 3,
-	ROWS = SERVICE_ROWS, /* of the study that is disturbed */
+	ROWS = 4 * SERVICE_ROWS, /* of the study that is disturbed: half a second of one core */
 	RUNS = ROWS * 5 * SIGNALS,
+	LONG_ROWS = 20 * SERVICE_ROWS,
 	SHORT_ROWS = 20,
-	KILLED_AT_MS = 300, /* at most, after the study runs */
-	GONE_MS = 5000,     /* within which workers end after their server */
-	CANCEL_MS = 1000,   /* within which a cancelled study leaves its workers */
-	SOON_MS = 2000,     /* within which a short study ends behind a long one */
+	GONE_MS = 5000,   /* within which workers end after their server */
+	CANCEL_MS = 1000, /* within which a cancelled study leaves its workers */
+	SOON_MS = 2000,   /* within which a short study ends behind a long one */
 };
 
 static struct {
@@ -98,6 +98,12 @@ static void check_same(const struct service *service, const char *id)
 	assert_int_equal(service_number(service, "SELECT runs_done FROM study"), RUNS);
 }
 
+/* Whether the study has not ended. */
+static bool runs(const struct service *service)
+{
+	return service_number(service, "SELECT count(*) FROM study WHERE status = 'running'") == 1;
+}
+
 static bool logged(const struct service *service, const char *text)
 {
 	size_t n;
@@ -129,7 +135,7 @@ static void workers_run_blocks_into_the_database(void **state)
 static void killed_workers_lose_no_block_and_double_none(void **state)
 {
 	const int n = check_count(20, 500);
-	int kills = 0, noticed = 0;
+	int midway = 0, noticed = 0;
 	double blocks = 0;
 	(void)state;
 	srand(1);
@@ -139,10 +145,10 @@ static void killed_workers_lose_no_block_and_double_none(void **state)
 		struct service *service = service_new();
 		start(service, world.launcher, "2");
 		service_submit(service, world.study, id);
-		while (groups_pids(world.pids, pids) < 2)
-			usleep(1000);
-		usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
-		kills += kill(pids[rand() % 2], SIGKILL) == 0;
+		groups_wait(world.pids, 2, pids);
+		service_wait(service, id, "running", rand() % RUNS);
+		assert_int_equal(kill(pids[rand() % 2], SIGKILL), 0);
+		midway += runs(service);
 		check_same(service, id);
 		noticed += logged(service, "the connection ended");
 		blocks += metric(service, "pound_worker_blocks_total");
@@ -150,9 +156,10 @@ static void killed_workers_lose_no_block_and_double_none(void **state)
 		service_free(service);
 	}
 	check_report(
-	    "workers killed: %d, noticed %d; blocks run by workers %d; lost 0, doubled 0, results that differ 0",
-	    kills, noticed, (int)blocks);
-	assert_true(kills > 0 && noticed > 0 && blocks > 0);
+	    "workers killed: %d, %d of them while the study ran, noticed %d; blocks run by workers %d; lost 0, "
+	    "doubled 0, results that differ 0",
+	    n, midway, noticed, (int)blocks);
+	assert_true(midway > n / 2 && noticed > 0 && blocks > 0);
 }
 
 static void a_killed_server_goes_on_and_its_workers_end(void **state)
@@ -165,15 +172,17 @@ static void a_killed_server_goes_on_and_its_workers_end(void **state)
 	while (kills < n) {
 		struct service *service = service_new();
 		char id[17];
+		int64_t done = 0;
 		start(service, world.launcher, "2");
 		service_submit(service, world.study, id);
 		for (bool running = true; running && kills < n; kills++) {
-			usleep((useconds_t)(1000 * (rand() % KILLED_AT_MS)));
+			// some four times a study, at its very start, too
+			service_wait(service, id, "running", (double)(done - RUNS / 8 + rand() % (RUNS / 2)));
 			service_kill(service);
 			const double gone = groups_gone(world.pids, GONE_MS);
 			gone_most = gone > gone_most ? gone : gone_most;
 			running = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'") == 0;
-			const int64_t done = service_number(service, "SELECT count(*) FROM block");
+			done = service_number(service, "SELECT ifnull(sum(runs), 0) FROM block");
 			resumed += running && done > 0;
 			start(service, world.launcher, "2");
 		}
@@ -186,13 +195,13 @@ static void a_killed_server_goes_on_and_its_workers_end(void **state)
 	             "were gone after "
 	             "%.2f s at most; blocks lost 0, doubled 0, results that differ 0",
 	             kills, resumed, studies, gone_most);
-	assert_true(resumed > 0);
+	assert_true(resumed > n / 2);
 }
 
 static void a_cancelled_study_leaves_its_workers(void **state)
 {
 	struct service *service = service_new();
-	char *large = service_study(20 * ROWS, SIGNALS, SEED), long_id[17], id[17];
+	char *large = service_study(LONG_ROWS, SIGNALS, SEED), long_id[17], id[17];
 	(void)state;
 	start(service, world.launcher, "2");
 	service_submit(service, large, long_id);
@@ -222,7 +231,7 @@ static void a_cancelled_study_leaves_its_workers(void **state)
 static void a_short_study_ends_soon_behind_a_long_one(void **state)
 {
 	struct service *service = service_new();
-	char *large = service_study(20 * ROWS, SIGNALS, SEED), *small = service_study(SHORT_ROWS, SIGNALS, SEED),
+	char *large = service_study(LONG_ROWS, SIGNALS, SEED), *small = service_study(SHORT_ROWS, SIGNALS, SEED),
 	     long_id[17], id[17];
 	(void)state;
 	start(service, world.launcher, "2");
@@ -235,7 +244,7 @@ static void a_short_study_ends_soon_behind_a_long_one(void **state)
 	const double took = groups_now() - start_s;
 	check_report("a short study behind a long one ended after %.2f s", took);
 	assert_true(!check_soaks() || took < 1e-3 * SOON_MS);
-	assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'running'"), 1);
+	assert_true(runs(service));
 	service_stop(service);
 	service_free(service);
 	free(large);
@@ -270,10 +279,11 @@ static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
 	(void)state;
 	start(service, world.launcher, "1");
 	service_submit(service, world.study, id);
-	wait_groups(service, 1);
-	assert_true(groups_pids(world.pids, pids) >= 1);
-	usleep(50000);
+	groups_wait(world.pids, 1, pids);
+	while (metric(service, "pound_worker_blocks_total") == 0 && runs(service))
+		usleep(2000);
 	assert_int_equal(kill(pids[0], SIGSTOP), 0);
+	assert_true(runs(service));
 	const double start_s = groups_now();
 	check_same(service, id);
 	check_report("a worker that was stopped with blocks: the study ended after %.1f s, same bytes",
@@ -375,7 +385,8 @@ static void cpu_time_of_worker_groups_counts_toward_the_cpu_limit(void **state)
 	const double all = reading_number(status, "/cpu_s");
 	assert_int_equal(strncmp(reading_text(status, "/error"), "cpu-limit: ", strlen("cpu-limit: ")), 0);
 	check_report("failed as cpu-limit of 3 s after %.2f s, of which the server took %.2f", all, own);
-	assert_true(all >= 3 && own < 0.9 * all);
+	// sanitizers take their share of the server's time
+	assert_true(all >= 3 && (!SERVICE_MEMORY || own < 0.9 * all));
 	reading_close(status);
 	answer_free(&answer);
 	service_stop(service);

@@ -7,7 +7,10 @@
 #include "tests/support/check.h"
 #include "tests/support/program.h"
 
-enum { BLOCKS_MAX = 4000 };
+enum {
+	BLOCKS_MAX = 4000,
+	LISTED_S = 60, /* within which launchers start */
+};
 
 double groups_now(void)
 {
@@ -33,6 +36,14 @@ int groups_pids(const char *path, pid_t pids[GROUPS_PIDS_MAX])
 	if (file)
 		fclose(file);
 	return n;
+}
+
+void groups_wait(const char *path, int n, pid_t pids[GROUPS_PIDS_MAX])
+{
+	const double start = groups_now();
+	for (int listed; (listed = groups_pids(path, pids)) < n; usleep(1000))
+		if (groups_now() - start > LISTED_S)
+			fail_msg("%d workers of %d have started after %d s", listed, n, LISTED_S);
 }
 
 bool groups_is_gone(pid_t pid)

@@ -11,6 +11,8 @@ double groups_now(void); /* [s] monotonic */
 void groups_write(const char *path, const char *text);
 /* The processes that a file lists; returns how many. */
 int groups_pids(const char *file, pid_t pids[GROUPS_PIDS_MAX]);
+/* Waits until a file lists n processes, which fails the test after a minute. */
+void groups_wait(const char *file, int n, pid_t pids[GROUPS_PIDS_MAX]);
 bool groups_is_gone(pid_t pid);
 /* Waits until none of them is there, which fails the test after limit_ms; how long that took [s]. */
 double groups_gone(const char *file, int limit_ms);
