@@ -8,6 +8,7 @@
 #include <netdb.h>
 #include <pthread.h>
 #include <sched.h>
+#include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -254,9 +255,14 @@ int worker_threads(void)
 	return n < MESSAGE_THREADS_MAX ? n : MESSAGE_THREADS_MAX;
 }
 
-__attribute__((noreturn)) static void fail(const char *what, const char *about)
+__attribute__((noreturn, format(printf, 1, 2))) static void fail(const char *format, ...)
 {
-	fprintf(stderr, "pound-worker: %s%s\n", what, about);
+	va_list values;
+	va_start(values, format);
+	fputs("pound-worker: ", stderr);
+	vfprintf(stderr, format, values);
+	fputs("\n", stderr);
+	va_end(values);
 	exit(1);
 }
 
@@ -284,8 +290,7 @@ int worker_connect(int n_threads)
 	const char *address = getenv("POUND_WORKER");
 	if (!address)
 		fail("it is started by a launcher, which says in POUND_WORKER where to connect; "
-		     "see `pound run --help', --launcher",
-		     "");
+		     "see `pound run --help', --launcher");
 	// from the end, as an address of IPv6 has colons
 	char *host = strdup(address), *token = host ? strrchr(host, ':') : NULL;
 	if (token)
@@ -294,16 +299,18 @@ int worker_connect(int n_threads)
 	if (port)
 		*port++ = '\0';
 	if (!port || strlen(token) != MESSAGE_TOKEN_SIZE)
-		fail("POUND_WORKER must be HOST:PORT:TOKEN", "");
+		fail("POUND_WORKER must be HOST:PORT:TOKEN");
 	int s = connect_to(host, port);
 	if (s < 0)
-		fail("cannot connect to ", host);
+		fail("cannot connect to %s, port %s; on another machine than the program that started this one, that "
+		     "program needs --worker-host",
+		     host, port);
 	message_prepare(s);
 	const struct message ready = {
 	    .type = MESSAGE_READY, .block = n_threads, .n = (uint32_t)strlen(POUND_VERSION)};
 	if (send(s, token, MESSAGE_TOKEN_SIZE, MSG_NOSIGNAL) != MESSAGE_TOKEN_SIZE ||
 	    !message_send(s, &ready, POUND_VERSION))
-		fail("cannot send to ", host);
+		fail("cannot send to %s", host);
 	free(host);
 	return s;
 }

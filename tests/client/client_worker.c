@@ -452,12 +452,22 @@ static void several_ranks_of_pound_run_are_wrong_usage(void **state)
 	program_free(&outcome);
 }
 
+// of the length that tokens have
+#define TOKEN_16 "0123456789abcdef"
+#define TOKEN    TOKEN_16 TOKEN_16 TOKEN_16 TOKEN_16
+
 static void a_worker_that_no_launcher_started_says_so(void **state)
 {
 	(void)state;
 	struct program_outcome outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
 	program_expect(&outcome, 1);
 	assert_non_null(strstr(outcome.err, "--launcher"));
+	program_free(&outcome);
+	setenv("POUND_WORKER", "127.0.0.1:1:" TOKEN, 1);
+	outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
+	program_expect(&outcome, 1);
+	assert_non_null(strstr(outcome.err, "cannot connect to 127.0.0.1, port 1; "));
+	assert_non_null(strstr(outcome.err, "--worker-host"));
 	program_free(&outcome);
 	setenv("POUND_WORKER", "nonsense", 1);
 	outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
