@@ -382,7 +382,7 @@ struct pound_study {
 enum { POUND_SPLIT_LEAST = 2, POUND_SPLIT_PILOT_LEAST = 32 /* rows */ };
 int pound_study_pilot_rows(const struct pound_study *study);
 int64_t pound_study_pilot_runs(const struct pound_study *study);
-void pound_study_split(const struct pound_study *study, int signals, struct pound_study *settled);
+void pound_study_split(const struct pound_study *study, int signals, struct pound_study *as_split);
 
 bool pound_study_sampled(const struct pound_study *study); /* its runs are those of a design */
 bool pound_study_pounds(const struct pound_study *study);  /* its outputs need runs with contact */

@@ -58,7 +58,7 @@ static void groups_back(void *of, int group, const struct coordinator_block *blo
 	struct job *job = groups_job(work, block);
 	assignment_back(&job->blocks, block->number, group);
 	job->n_out--;
-	settle(work, job);
+	finish_if_complete(work, job);
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
 }
@@ -85,7 +85,7 @@ static void groups_done(void *of, int group, const struct coordinator_block *blo
 		if (status != POUND_OK)
 			end(job, pound_status_error(status));
 		job->n_inside--;
-		settle(work, job);
+		finish_if_complete(work, job);
 	}
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);

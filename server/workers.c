@@ -180,7 +180,7 @@ static void drop(struct work *work, struct job *job)
 }
 
 /* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
-static void settle(struct work *work, struct job *job)
+static void finish_if_complete(struct work *work, struct job *job)
 {
 	if (job->n_inside || (!job->ended && (job->reductions_left || stored_run_left(&job->of))))
 		return;
@@ -207,7 +207,7 @@ static void hand_over(struct work *work, struct job *job, int block, double cpu_
 		pthread_cond_wait(&work->changed, &work->lock);
 	if (work->n_waiting == WAITING_MAX) {
 		job->n_inside--;
-		settle(work, job);
+		finish_if_complete(work, job);
 		return;
 	}
 	work->waiting[work->n_waiting++] =
@@ -245,7 +245,7 @@ static void commit_waiting(struct work *work)
 			job->of.stored[done[i].block.number] = true;
 		else
 			end(job, NULL);
-		settle(work, job);
+		finish_if_complete(work, job);
 	}
 	pthread_cond_broadcast(&work->changed);
 }
@@ -411,7 +411,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 			job->reductions_left = job->n_reductions;
 			coordinator_wake(work->coordinator);
 		}
-		settle(work, job);
+		finish_if_complete(work, job);
 	}
 	study_here = 0;
 	pthread_cond_broadcast(&work->changed);
@@ -508,7 +508,7 @@ static void claim(struct work *work)
 		TAILQ_INSERT_TAIL(&work->jobs, job, others);
 		open_run(work, job);
 		job->n_inside = 0;
-		settle(work, job);
+		finish_if_complete(work, job);
 		study_here = 0;
 	} else
 		free(job);
@@ -564,7 +564,7 @@ static double end_late(struct work *work)
 			end(job, "timeout: it ran for longer than the server's --time-max");
 		// settling lets the lock go, so the list may be another
 		if (late && job->n_inside == 0) {
-			settle(work, job);
+			finish_if_complete(work, job);
 			job = TAILQ_FIRST(&work->jobs);
 		} else
 			job = TAILQ_NEXT(job, others);
@@ -653,7 +653,7 @@ void work_drop(struct work *work, int64_t id)
 	TAILQ_FOREACH(job, &work->jobs, others)
 	if (job->id == id) {
 		end(job, NULL);
-		settle(work, job);
+		finish_if_complete(work, job);
 		coordinator_wake(work->coordinator);
 		pthread_cond_broadcast(&work->changed);
 		break;

@@ -23,7 +23,7 @@ typedef void chain_run(const struct pound_chain_task *, struct pound_chain_resul
 
 /* Bytes of work space of chains whose contacts have a form of force.
  *
- * Only of products and powers of the overlap a step has series of its own for every contact (struct warp, the end of struct chain).
+ * Only of products and powers of the overlap a step has series of its own for every contact (struct curved_step, the end of struct chain).
  *
  * Test     unit_chain: the_largest_row_of_straight_contacts_takes_a_mebibyte
  */

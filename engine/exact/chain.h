@@ -78,7 +78,7 @@ struct pound_chain_piece {
 	int order;
 	bool sampled, after_event; /* it starts at a sample of the ground motion, behind an event */
 	bool touching;             /* a contact has a force on the first floor */
-	bool warped; /* time is no multiple of s, but sum clock[n] s^n since the start [s]  (order + 1) */
+	bool time_is_series; /* time is no multiple of s, but sum clock[n] s^n since the start [s]  (order + 1) */
 	double clock[POUND_CHAIN_ORDER + 1];
 	struct pound_chain_floor_motion floors[POUND_CHAIN_OBSERVED];
 };

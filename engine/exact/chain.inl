@@ -38,7 +38,7 @@ static bool link_far(const struct chain *c, const struct link *l)
 }
 
 /* Brings to rest what is left of next to nothing of a building that touches none, where nothing comes from the ground. */
-static void building_settle(struct chain *c, int first, int stories)
+static void building_to_rest(struct chain *c, int first, int stories)
 {
 	for (int i = first; i < first + stories; i++)
 		if (fabs(c->d.at[i]) >= POUND_AT_REST || fabs(c->v.at[i]) * c->task->time_step >= POUND_AT_REST ||
@@ -48,14 +48,14 @@ static void building_settle(struct chain *c, int first, int stories)
 		c->d.at[i] = c->v.at[i] = 0;
 }
 
-static void chain_settle(struct chain *c)
+static void chain_to_rest(struct chain *c)
 {
 	for (int j = 0; j < c->n_links; j++)
 		if (c->link[j].touching || c->link[j].released)
 			return;
 	for (int first = 0, stories; first < c->n; first += stories) {
 		stories = building_stories(c->task, first);
-		building_settle(c, first, stories);
+		building_to_rest(c, first, stories);
 	}
 }
 
@@ -79,7 +79,7 @@ static void chain_interval(struct chain *c)
 	interval_set(c, c->next);
 	c->steps = 0;
 	if (c->ground == 0 && c->slope == 0)
-		chain_settle(c);
+		chain_to_rest(c);
 	links_release(c);
 }
 
@@ -108,7 +108,7 @@ static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 }
 
 static_assert(sizeof(struct chain) <= POUND_CHAIN_SCRATCH, "a chain fits into its work space");
-static_assert(offsetof(struct chain, warp.clock) <= POUND_CHAIN_SCRATCH_STRAIGHT,
+static_assert(offsetof(struct chain, curved_step.clock) <= POUND_CHAIN_SCRATCH_STRAIGHT,
               "so does one that has no step but in time");
 
 /* Runs every task to its end.

@@ -25,7 +25,7 @@ static double series_at(const double *first, size_t stride, double t)
 }
 
 /* Overlap of the contact that gives w, to all digits however small. */
-static double warp_overlap(const struct warp *x, double t)
+static double curved_overlap(const struct curved_step *x, double t)
 {
 	const double w = series_at(x->w, 1, t);
 	return x->power == 1 ? w * w : w * w * (w * w);
@@ -42,7 +42,7 @@ struct powers {
  */
 static struct powers powers_at(struct chain *c, double t, double weight)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	double pace = 1; // of time by the share of the step, over c->dt
 	const struct pound_chain_task *task = c->task;
 	const double h = c->dt, elapsed = x->on ? series_at(x->clock, 1, t) : t * h;
@@ -87,7 +87,7 @@ static struct powers powers_at(struct chain *c, double t, double weight)
 		q /= h;
 		if (x->on) {
 			q = series_at(x->links[j].rate, 1, t);
-			power = pound_contact_force_on(on, j == x->master ? warp_overlap(x, t) : overlap, q) * q;
+			power = pound_contact_force_on(on, j == x->master ? curved_overlap(x, t) : overlap, q) * q;
 		} else
 			power = fma(on->stiffness, overlap, fma(on->damping, q, on->offset)) * q;
 		p.out += power;

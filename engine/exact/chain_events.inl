@@ -85,15 +85,15 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	if (!vany(reversals))
 		return;
 	struct power velocity;
-	if (c->warp.on) {
-		power_load(&velocity, c->order, c->warp.rates, i);
+	if (c->curved_step.on) {
+		power_load(&velocity, c->order, c->curved_step.rates, i);
 		enclosure = enclosure_make(&velocity, c->order);
 	} else
 		enclosure = enclosure_of_velocity(&m, c->order);
 	reversals &= may_cross(&enclosure, zero, -direction);
 	if (!vany(reversals))
 		return;
-	if (!c->warp.on)
+	if (!c->curved_step.on)
 		motion_velocity(&velocity, &m, c->order);
 	guard_search(first, c, guard_of(&velocity, &enclosure, zero, -direction), reversals,
 	             EVENT_STORY + POUND_EDGE_REVERSAL, index);
@@ -219,14 +219,14 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, const s
 static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap,
                        const int *index)
 {
-	if (!c->warp.on) {
+	if (!c->curved_step.on) {
 		motion_velocity(rate, overlap, c->order);
 		return;
 	}
 	for (int n = 0; n <= ORDER_HIGH; n++) {
 		double value[W];
 		for (int l = 0; l < W; l++)
-			value[l] = n <= c->order && index[l] >= 0 ? c->warp.links[index[l]].rate[n] : 0;
+			value[l] = n <= c->order && index[l] >= 0 ? c->curved_step.links[index[l]].rate[n] : 0;
 		rate->c[n] = lanes_load(value);
 	}
 }
@@ -322,7 +322,7 @@ static void held_search(struct first *first, const struct chain *c, int j)
 	struct power guard;
 	for (int n = 0; n <= ORDER_HIGH; n++)
 		guard.c[n] = vsplat(n + 2 <= c->order ? -c->overlaps[n][j] : 0);
-	// no more than the rounding of what it is made of: nothing, and the next derivative decides (chain_series.inl: link_settle)
+	// no more than the rounding of what it is made of: nothing, and the next derivative decides (chain_series.inl: link_zero_rounding)
 	if (fabs(c->overlaps[0][j]) <= POUND_UNDECIDED * held_terms(c, &c->link[j]))
 		guard.c[0] = vsplat(0);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};

@@ -484,7 +484,7 @@ static void notes_look(struct chain *c)
 	f->at[0].v = c->v;
 	c->n_links = 0;
 	links_list(c); // none acts
-	c->edged = c->warp.on = false;
+	c->edged = c->curved_step.on = false;
 	c->pace = 1;
 	c->reach = 0;
 	for (int k = f->notes - 1; k >= 0; k--)
@@ -575,7 +575,7 @@ LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 
 /* Ends what is left of next to nothing while the ground is silent: below nothing could be proved, and every operation would take
  * a hundred times as long. */
-static void modal_settle(struct chain *c)
+static void modal_to_rest(struct chain *c)
 {
 	struct modal_motion *f = &c->modal_motion;
 	const double *a = &c->task->ground[c->next];
@@ -593,7 +593,7 @@ LANE_INLINE void modal_samples(struct chain *c, const atomic_bool *stop, bool ed
 	for (; c->next < c->task->n_samples; c->next++) {
 		if (c->next % STOP_STEPS == 0 && pound_stopped(stop))
 			break;
-		modal_settle(c);
+		modal_to_rest(c);
 		if (!modal_sample(c, edged, moving))
 			break;
 	}

@@ -11,7 +11,7 @@ static double link_force_at(const struct chain *c, int j, int n)
 	const double per_h2 = 1 / (c->dt * c->dt);
 	if (l->held)
 		return c->overlaps[n][j] * per_h2;
-	return c->warp.on ? curve_force(c, j, n) : link_force(c, l, j, n) * per_h2;
+	return c->curved_step.on ? curve_force(c, j, n) : link_force(c, l, j, n) * per_h2;
 }
 
 /* Acceleration of the contacts, or of the observed one, on floor i of order n. */
@@ -32,7 +32,7 @@ static double push_at(const struct chain *c, int i, int n)
 /* Absolute acceleration of floor i of order n. */
 static double acceleration_at(const struct chain *c, int i, int n)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	const double per_h2 = 1 / (c->dt * c->dt);
 	double sum = x->on    ? fma(c->slope, x->clock[n], n == 0 ? c->ground : 0)
 	             : n == 0 ? c->ground
@@ -81,14 +81,14 @@ static void floors_report(const struct chain *c, double time, struct pound_chain
 static void pieces_report(struct chain *c, double time)
 {
 	const struct pound_chain_observer *observer = c->task->observer;
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	struct pound_chain_piece piece = {.time = chain_time(c),
 	                                  .ground = c->ground,
 	                                  .slope = c->slope,
 	                                  .order = x->on ? ORDER_HIGH : c->order - 2,
 	                                  .sampled = c->remainder == c->task->time_step,
 	                                  .after_event = c->after_event,
-	                                  .warped = x->on && x->power > 0};
+	                                  .time_is_series = x->on && x->power > 0};
 	double power = 1;
 	for (int n = 0; n <= ORDER_HIGH && x->on; n++, power *= time)
 		piece.clock[n] = x->clock[n] * power;

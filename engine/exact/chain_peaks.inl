@@ -109,10 +109,10 @@ LANE_INLINE void acceleration_top(struct chain *c, const struct column series[TE
 static void accelerations_keep(struct chain *c, double time)
 {
 	const double h = c->dt, rise = c->slope * h;
-	if (c->warp.on) {
-		warp_floor_accelerations(c);
+	if (c->curved_step.on) {
+		curved_floor_accelerations(c);
 		for (int i = 0; i < c->wide; i += W)
-			acceleration_top(c, c->warp.accelerations, i, time);
+			acceleration_top(c, c->curved_step.accelerations, i, time);
 		return;
 	}
 	const vd per_h2 = vsplat(1 / (h * h)), zero = vsplat(0);
@@ -134,7 +134,7 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 	const double k = l->at.on.stiffness, damping = l->at.on.damping / c->dt;
 	struct power x = {0};
 	for (int n = 0; n <= c->order; n++) {
-		if (c->warp.on || l->held) {
+		if (c->curved_step.on || l->held) {
 			x.c[n] = vsplat(!l->held            ? curve_force(c, j, n)
 			                : n + 2 <= c->order ? c->overlaps[n][j] / (c->dt * c->dt)
 			                                    : 0);

@@ -194,7 +194,7 @@ static double floor_terms(const struct chain *c, int i, int n)
  *
  * Given    ground  of order n
  */
-static void link_settle(struct chain *c, struct link *l, int j, int n, double ground)
+static void link_zero_rounding(struct chain *c, struct link *l, int j, int n, double ground)
 {
 	double made = fabs(ground);
 	for (int k = 0; k < l->n_ends; k++)
@@ -207,8 +207,8 @@ static void link_settle(struct chain *c, struct link *l, int j, int n, double gr
 }
 
 /* A story without rate where its branch ends goes on to the next or back by its acceleration: where that is no more than the
- * rounding of what it is made of it is nothing (step.inl: still_settle). */
-static void story_settle(struct chain *c, int i, double ground)
+ * rounding of what it is made of it is nothing (step.inl: still_zero_rounding). */
+static void story_zero_rounding(struct chain *c, int i, double ground)
 {
 	const double d = c->d.at[i];
 	if (i >= c->n || (d != c->low.at[i] && d != c->high.at[i] && c->direction.at[i] == 0))
@@ -268,16 +268,16 @@ LANE_INLINE void overlaps_next(struct chain *c, int n, double ground)
 		}
 		c->overlaps[n + 2][j] = link_sum(l, c->displacements[n + 2].at);
 		if (l->level)
-			link_settle(c, l, j, n, ground);
+			link_zero_rounding(c, l, j, n, ground);
 	}
 }
 
 /* Stories without rate where their branch ends. */
-static void stories_settle(struct chain *c, double ground)
+static void stories_zero_rounding(struct chain *c, double ground)
 {
 	for (int i = 0; i < c->n; i += W)
 		for (unsigned still = vbits(vequal(column_load(&c->v, i), vsplat(0))); still; still &= still - 1)
-			story_settle(c, i + __builtin_ctz(still), ground);
+			story_zero_rounding(c, i + __builtin_ctz(still), ground);
 }
 
 /* One order of all that moves. */
@@ -290,7 +290,7 @@ LANE_INLINE void series_order(struct chain *c, int n, double ground, const struc
 	}
 	floors_next(c, n, ground, kind);
 	if (kind.first && c->edged)
-		stories_settle(c, ground);
+		stories_zero_rounding(c, ground);
 	if (kind.moving && c->own.n > 0)
 		overlaps_next(c, n, ground);
 }

@@ -128,7 +128,7 @@ struct curve {
 };
 
 /* the series of a step while the force of a contact is no straight line (nonlinear_contact.inl) */
-struct warp {
+struct curved_step {
 	bool on;       /* the current step is one */
 	bool still;    /* a contact begins without speed: its force waits for a moment */
 	bool sampled;  /* the step ends at the end of the interval */
@@ -207,7 +207,7 @@ struct chain {
 	double work_in, work_gap, work_low, work_top;
 	struct column work_story; /* on the springs of stories */
 	double work_link[LINKS];
-	struct warp warp; /* the last one: without such contacts there is no room for its series */
+	struct curved_step curved_step; /* the last one: without such contacts there is no room for its series */
 };
 
 /* ---- links ---- */
@@ -383,7 +383,7 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	assert(task->n_links >= 0 && task->n_links <= POUND_CHAIN_LINKS);
 	memset(c, 0, offsetof(struct chain, modal_motion));
 	c->work_in = c->work_gap = c->work_low = c->work_top = c->jump = 0;
-	c->after_event = c->warp.on = false;
+	c->after_event = c->curved_step.on = false;
 	memset(&c->work_story, 0, sizeof c->work_story);
 	memset(c->work_link, 0, sizeof c->work_link);
 	c->task = task;

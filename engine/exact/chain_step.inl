@@ -308,15 +308,15 @@ static void chain_step(struct chain *c)
 {
 	if (c->moving)
 		chain_displacements(c);
-	c->warp.on = chain_curved(c);
+	c->curved_step.on = chain_curved(c);
 	links_list(c);
-	if (c->warp.on) {
+	if (c->curved_step.on) {
 		nonlinear_series(c);
 	} else {
 		step_choose(c);
 		series_chain(c);
 	}
-	const struct first first = c->warp.on ? nonlinear_events(c) : events_search(c);
+	const struct first first = c->curved_step.on ? nonlinear_events(c) : events_search(c);
 	if (first.time > 0) {
 		if (c->task->observer)
 			pieces_report(c, first.time);
@@ -324,7 +324,7 @@ static void chain_step(struct chain *c)
 			energy_keep(c, first.time);
 		if (c->task->asked & POUND_CHAIN_ACCELERATIONS)
 			accelerations_keep(c, first.time);
-		if (c->warp.on)
+		if (c->curved_step.on)
 			nonlinear_arrive(c, first.time);
 		else
 			step_arrive(c, first.time);

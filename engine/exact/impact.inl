@@ -30,8 +30,9 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 		if (above && c->inverse_above.at[i] == 0)
 			break;
 		double s;
-		if (c->warp.on)
-			s = fma(c->dashpot.at[k], c->warp.rates[n].at[k], c->stiffness.at[k] * c->drifts[n].at[k]) +
+		if (c->curved_step.on)
+			s = fma(c->dashpot.at[k], c->curved_step.rates[n].at[k],
+			        c->stiffness.at[k] * c->drifts[n].at[k]) +
 			    (n == 0 ? c->offset.at[k] : 0);
 		else
 			s = fma(c->dash.at[k] * (n + 1), c->drifts[n + 1].at[k], c->spring.at[k] * c->drifts[n].at[k]) +
@@ -40,10 +41,10 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 	}
 	if (c->mass_damping.at[i] == 0)
 		damping = 0;
-	else if (c->warp.on) {
+	else if (c->curved_step.on) {
 		damping = 0;
 		for (int k = i; k >= 0; k = c->base.at[k] != 0 ? -1 : k - 1)
-			damping += c->warp.rates[n].at[k];
+			damping += c->curved_step.rates[n].at[k];
 		damping *= c->mass_damping.at[i];
 	} else
 		damping = c->mass_damping_step.at[i] * (n + 1) * c->displacements[n + 1].at[i];
@@ -240,8 +241,8 @@ static void impact(struct chain *c, struct link *l, double time)
 {
 	const struct pound_contact_law *law = &l->link->law;
 	double *m = l->measures, q = fmax(l->q, 0), e = law->restitution;
-	const bool warped = c->warp.on;
-	c->warp.on = false;
+	const bool time_is_series = c->curved_step.on;
+	c->curved_step.on = false;
 	l->own = true;
 	l->p = 0;
 	const double a = link_acceleration(c, l);
@@ -274,5 +275,5 @@ static void impact(struct chain *c, struct link *l, double time)
 		contact_record(c, l, time, impulse);
 	}
 	c->reach = 0;
-	c->warp.on = warped;
+	c->curved_step.on = time_is_series;
 }

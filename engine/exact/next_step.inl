@@ -192,7 +192,7 @@ static enum pound_stage simulation_from(struct simulation *sim)
  *
  * Returns  value  nothing is left of either: simulation_rest is to follow
  */
-static bool simulation_settles(struct simulation *sim)
+static bool simulation_comes_to_rest(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
 	if (x->ground != 0 || x->slope != 0)
@@ -220,7 +220,8 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	x->pace = 1;
 	double left =
 	    x->remainder +
-	    x->substeps * x->substep; // of the interval: bodies that press each other settle inside one too
+	    x->substeps *
+	        x->substep; // of the interval: bodies that press each other come to rest inside one, too
 	if (observed(sim))
 		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
@@ -248,7 +249,7 @@ static enum pound_stage simulation_after_free(struct simulation *sim, enum pound
 	if (sim->next > sim->last)
 		return STAGE_END;
 	simulation_interval(sim);
-	return simulation_settles(sim) ? simulation_rest(sim) : stage;
+	return simulation_comes_to_rest(sim) ? simulation_rest(sim) : stage;
 }
 
 /* What a simulation does next. */
@@ -260,7 +261,7 @@ static enum pound_stage simulation_next(struct simulation *sim)
 			return STAGE_END;
 		sim->next++;
 		simulation_interval(sim);
-		if (simulation_settles(sim))
+		if (simulation_comes_to_rest(sim))
 			return simulation_rest(sim);
 		// separated, and not about to touch inside the next interval
 		if (sim->has_free_maps && !sim->touching && !sim->released && x->p + x->remainder * x->q < 0)
@@ -280,7 +281,7 @@ static enum pound_stage simulation_next(struct simulation *sim)
 static enum pound_stage simulation_after_contact(struct simulation *sim, enum pound_stage stage, bool refused,
                                                  bool gone)
 {
-	if (simulation_settles(sim))
+	if (simulation_comes_to_rest(sim))
 		return simulation_rest(sim);
 	if (refused)
 		sim->doubled_limit = stage == STAGE_SUSTAINED ? sim->doubled - 1 : 0;

@@ -94,9 +94,9 @@ static bool link_still(const struct link *l)
  *
  * Returns  the fastest rate in s of these contacts
  */
-static double warp_begin(struct chain *c)
+static double curved_begin(struct chain *c)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	const struct link *master = &c->link[x->master];
 	bool root = master->at.on.form == POUND_TOUCH_ROOT;
 	for (int j = 0; j < c->n_links; j++) {
@@ -114,9 +114,9 @@ static double warp_begin(struct chain *c)
 }
 
 /* Chooses what the step goes in, and for how long at first. */
-static void warp_choose(struct chain *c)
+static void curved_choose(struct chain *c)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	double least = INFINITY, rate = c->rate_separated + c->damping_separated;
 	bool still = false;
 	x->master = -1;
@@ -143,7 +143,7 @@ static void warp_choose(struct chain *c)
 	if (still)
 		x->length = 0x1p-40 * x->length; // its force is below rounding: (2^-80)^1.5, 2^-60 of a dashpot's
 	else if (l && least * curve_rate(l) < 0.3) {
-		const double fastest = warp_begin(c), root = sqrt(fmax(l->p, 0));
+		const double fastest = curved_begin(c), root = sqrt(fmax(l->p, 0));
 		x->w[0] = x->power == 1 ? root : sqrt(root);
 		const double gauge = x->power == 1 ? root : root * x->w[0];
 		x->length = 1 / fmax(fastest, fmax(rate * gauge, 0x1p-200));
@@ -159,7 +159,7 @@ LANE_INLINE void power_fill(double a, const double *p, double *power, int n)
 }
 
 /* Order n of the powers of an overlap that begins with the master's: of P, times those of w. */
-static void beside_powers(struct warp *x, int j, bool root, int n)
+static void beside_powers(struct curved_step *x, int j, bool root, int n)
 {
 	const struct curve *by = &x->links[x->master];
 	struct curve *v = &x->links[j];
@@ -180,7 +180,7 @@ static void beside_powers(struct warp *x, int j, bool root, int n)
 /* Powers of a link's overlap of order n. */
 static void link_powers(struct chain *c, int j, int n)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	const struct link *l = &c->link[j];
 	const bool root = l->at.on.form == POUND_TOUCH_ROOT;
 	struct curve *v = &x->links[j];
@@ -206,7 +206,7 @@ static void link_powers(struct chain *c, int j, int n)
 /* Force of a contact, of order n: its overlap, rate and powers are known up to there. */
 static double curve_force(const struct chain *c, int j, int n)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	const struct pound_touch_branch *on = &c->link[j].at.on;
 	const struct curve *v = &x->links[j];
 	switch (on->form) {
@@ -225,7 +225,7 @@ static double curve_force(const struct chain *c, int j, int n)
 }
 
 /* Adds the forces of modal damping of order n, over masses. */
-static void warp_modal(struct chain *c, int n)
+static void curved_modal(struct chain *c, int n)
 {
 	const struct pound_chain_task *task = c->task;
 	for (int first = 0, stories; first < c->n; first += stories) {
@@ -233,51 +233,52 @@ static void warp_modal(struct chain *c, int n)
 		for (int i = first; i < first + stories && task->floors[i].modal; i++) {
 			double sum = 0;
 			for (int j = 0; j < stories; j++)
-				sum = fma(task->floors[i].modal[j], c->warp.rates[n].at[first + j], sum);
+				sum = fma(task->floors[i].modal[j], c->curved_step.rates[n].at[first + j], sum);
 			c->push.at[i] = fma(c->inverse_mass.at[i], sum, c->push.at[i]);
 		}
 	}
 }
 
 /* Sets what acts on floors from outside at order n. */
-static void warp_pushes(struct chain *c, int n)
+static void curved_pushes(struct chain *c, int n)
 {
 	for (int i = 0; i < c->wide; i += W)
 		column_store(&c->push, i, vsplat(0));
-	if (c->warp.master >= 0)
-		link_powers(c, c->warp.master, n);
+	if (c->curved_step.master >= 0)
+		link_powers(c, c->curved_step.master, n);
 	for (int j = 0; j < c->n_links; j++) {
 		const struct link *l = &c->link[j];
-		if (link_power(l) && j != c->warp.master)
+		if (link_power(l) && j != c->curved_step.master)
 			link_powers(c, j, n);
 		if (l->touching)
 			push_add(c, l, curve_force(c, j, n));
 	}
 	if (c->modal)
-		warp_modal(c, n);
+		curved_modal(c, n);
 }
 
-LANE_INLINE vd warp_story_force(const struct chain *c, int i, int n)
+LANE_INLINE vd curved_story_force(const struct chain *c, int i, int n)
 {
 	const vd elastic = column_load(&c->stiffness, i) * column_load(&c->drifts[n], i);
-	const vd s = vfma(column_load(&c->dashpot, i), column_load(&c->warp.rates[n], i), elastic);
+	const vd s = vfma(column_load(&c->dashpot, i), column_load(&c->curved_step.rates[n], i), elastic);
 	return n == 0 ? s + column_load(&c->offset, i) : s;
 }
 
 /* Accelerations of drifts of order n (chain_series.inl: floors_next). */
-LANE_INLINE void warp_accelerate(struct chain *c, int n, double ground)
+LANE_INLINE void curved_accelerate(struct chain *c, int n, double ground)
 {
 	const vd zero = vsplat(0);
-	vd s = warp_story_force(c, 0, n), below = zero;
+	vd s = curved_story_force(c, 0, n), below = zero;
 	for (int i = 0; i < c->wide; i += W) {
-		const vd next = i + W < c->wide ? warp_story_force(c, i + W, n) : zero;
+		const vd next = i + W < c->wide ? curved_story_force(c, i + W, n) : zero;
 		const vd a = vfma(vabove(s, next), column_load(&c->inverse_above, i),
 		                  -(s * column_load(&c->inverse_mass, i))) -
 		             column_load(&c->push, i);
 		const vd under =
 		    vfma(vbelow(below, a), column_load(&c->inner, i), column_load(&c->base, i) * vsplat(ground));
-		column_store(&c->warp.accelerations[n], i,
-		             a - vfma(column_load(&c->mass_damping, i), column_load(&c->warp.rates[n], i), under));
+		column_store(
+		    &c->curved_step.accelerations[n], i,
+		    a - vfma(column_load(&c->mass_damping, i), column_load(&c->curved_step.rates[n], i), under));
 		below = a;
 		s = next;
 	}
@@ -285,9 +286,9 @@ LANE_INLINE void warp_accelerate(struct chain *c, int n, double ground)
 
 /* Order n + 1 of drifts and their rates, whose derivatives by s are g times the rates and their accelerations; by turns into two
  * sums each, as each waits for its term before. */
-LANE_INLINE void warp_integrate(struct chain *c, int n, int i)
+LANE_INLINE void curved_integrate(struct chain *c, int n, int i)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	vd drift[2] = {vsplat(0), vsplat(0)}, rate[2] = {vsplat(0), vsplat(0)};
 	if (x->power == 0) {
 		drift[0] = column_load(&x->rates[n], i);
@@ -312,7 +313,7 @@ LANE_INLINE void warp_integrate(struct chain *c, int n, int i)
 }
 
 /* Order n of g and of the time, out of w. */
-static void warp_gauge(struct warp *x, int n)
+static void curved_gauge(struct curved_step *x, int n)
 {
 	if (x->power > 0) {
 		x->w2[n] = product_at(x->w, x->w, n);
@@ -324,9 +325,9 @@ static void warp_gauge(struct warp *x, int n)
 }
 
 /* Order n + 1 of what links do. */
-static void warp_links(struct chain *c, int n)
+static void curved_links(struct chain *c, int n)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	struct column floors;
 	floors_sum(c, 1, &(const struct summed){x->rates[n + 1].at, floors.at});
 	for (int j = 0; j < c->n_links; j++) {
@@ -343,9 +344,9 @@ static void warp_links(struct chain *c, int n)
 }
 
 /* Order 0. */
-static void warp_start(struct chain *c)
+static void curved_start(struct chain *c)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	c->dt = 1;
 	c->held = false;
 	for (int j = 0; j < c->n_links; j++)
@@ -358,34 +359,34 @@ static void warp_start(struct chain *c)
 	x->clock[0] = 0;
 }
 
-/* A story without rate where its branch ends (chain_series.inl: story_settle). */
-static void warp_story_settle(struct chain *c, int i)
+/* A story without rate where its branch ends (chain_series.inl: story_zero_rounding). */
+static void curved_story_zero_rounding(struct chain *c, int i)
 {
-	c->drifts[2].at[i] = 0.5 * c->warp.accelerations[0].at[i];
-	story_settle(c, i, c->ground);
-	c->warp.accelerations[0].at[i] = 2 * c->drifts[2].at[i];
+	c->drifts[2].at[i] = 0.5 * c->curved_step.accelerations[0].at[i];
+	story_zero_rounding(c, i, c->ground);
+	c->curved_step.accelerations[0].at[i] = 2 * c->drifts[2].at[i];
 }
 
 /* Makes the series of a step, of the current length. */
-static void warp_series(struct chain *c)
+static void curved_series(struct chain *c)
 {
-	struct warp *x = &c->warp;
-	warp_start(c);
+	struct curved_step *x = &c->curved_step;
+	curved_start(c);
 	for (int n = 0; n <= ORDER_HIGH; n++) {
-		warp_gauge(x, n);
+		curved_gauge(x, n);
 		const double ground = fma(c->slope, x->clock[n], n == 0 ? c->ground : 0);
-		warp_pushes(c, n);
+		curved_pushes(c, n);
 		if (c->held)
 			held_push(c, n, ground);
-		warp_accelerate(c, n, ground);
+		curved_accelerate(c, n, ground);
 		if (n == 0 && c->edged)
 			for (int i = 0; i < c->n; i++)
-				warp_story_settle(c, i);
+				curved_story_zero_rounding(c, i);
 		if (n == ORDER_HIGH)
 			break;
 		for (int i = 0; i < c->wide; i += W)
-			warp_integrate(c, n, i);
-		warp_links(c, n);
+			curved_integrate(c, n, i);
+		curved_links(c, n);
 	}
 }
 
@@ -404,9 +405,9 @@ static void tail_keep(double most[LAST], const double *series, size_t stride, do
 }
 
 /* Ratio of lengths by which the last terms of all rates and of w are below rounding of the first ones. */
-static double warp_ratio(const struct chain *c)
+static double curved_ratio(const struct chain *c)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	double fastest = 0, most[LAST] = {0}, ratio = INFINITY;
 	for (int i = 0; i < c->n; i++)
 		fastest = fmax(fastest, fabs(x->rates[0].at[i]));
@@ -430,9 +431,9 @@ static double warp_ratio(const struct chain *c)
 }
 
 /* Makes a series one of a step that is longer or shorter by a ratio. */
-static void warp_scale(struct chain *c, double ratio)
+static void curved_scale(struct chain *c, double ratio)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	double factor = 1;
 	x->length *= ratio;
 	for (int n = 1; n <= ORDER_HIGH; n++) {
@@ -465,19 +466,19 @@ static void warp_scale(struct chain *c, double ratio)
 static void nonlinear_series(struct chain *c)
 {
 	enum { TRIES = 8 };
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	c->order = ORDER_HIGH;
-	warp_choose(c);
+	curved_choose(c);
 	x->length *= c->pace;
 	for (int try = 0; try < TRIES; try++) {
-		warp_series(c);
-		double ratio = x->still ? 1 : warp_ratio(c);
+		curved_series(c);
+		double ratio = x->still ? 1 : curved_ratio(c);
 		if (x->power == 0)
 			ratio = fmin(ratio, c->remainder / x->length);
 		if (ratio >= 0x1p-4 || try == TRIES - 1) {
 			ratio = fmin(ratio, c->pace < 1 ? 1 : 4);
 			if (ratio != 1)
-				warp_scale(c, ratio);
+				curved_scale(c, ratio);
 			break;
 		}
 		x->length *= ratio;
@@ -501,9 +502,9 @@ static bool chain_curved(const struct chain *c)
 }
 
 /* Makes accelerations of drifts those of floors, with the ground's: the series is not needed any more. */
-static void warp_floor_accelerations(struct chain *c)
+static void curved_floor_accelerations(struct chain *c)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	for (int n = 0; n <= ORDER_HIGH; n++) {
 		struct column floors;
 		floors_sum(c, 1, &(const struct summed){x->accelerations[n].at, floors.at});

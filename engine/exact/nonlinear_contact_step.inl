@@ -27,7 +27,7 @@ static void guard_fill(double guard[TERMS], const double *series, double sign)
 /* Looks for the end of a contact by its force, or for its return: K p^1.25 + c q passes 0 with the force. */
 static void forced_search(struct first *first, const struct chain *c, int j)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	const struct link *l = &c->link[j];
 	const struct curve *v = &x->links[j];
 	const double K = l->at.on.stiffness, C = l->at.on.damping;
@@ -47,7 +47,7 @@ static void forced_search(struct first *first, const struct chain *c, int j)
 /* Looks for the edges of a contact whose force is no straight line. */
 static void curved_search(struct first *first, const struct chain *c, int j)
 {
-	const struct warp *x = &c->warp;
+	const struct curved_step *x = &c->curved_step;
 	const struct link *l = &c->link[j];
 	double guard[TERMS];
 	if (x->still && link_still(l))
@@ -70,7 +70,7 @@ static void curved_search(struct first *first, const struct chain *c, int j)
 /* The first event of a step; its time is that of the sample at the end of the interval where that comes first. */
 static struct first nonlinear_events(struct chain *c)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	struct first first = events_search(c);
 	for (int j = 0; j < c->n_links; j++)
 		if (link_curved(&c->link[j]))
@@ -95,7 +95,7 @@ static struct first nonlinear_events(struct chain *c)
 }
 
 /* Integral of a series over the time up to a share of the step. */
-static double warp_integral(const struct warp *x, const double series[TERMS], double time)
+static double curved_integral(const struct curved_step *x, const double series[TERMS], double time)
 {
 	double sum = 0;
 	for (int n = ORDER_HIGH; n >= 0; n--)
@@ -109,13 +109,13 @@ static double curve_impulse(const struct chain *c, int j, double time)
 	double force[TERMS];
 	for (int n = 0; n <= ORDER_HIGH; n++)
 		force[n] = curve_force(c, j, n);
-	return warp_integral(&c->warp, force, time);
+	return curved_integral(&c->curved_step, force, time);
 }
 
 /* Where the floors and links are at a share of the step. */
 static void nonlinear_arrive(struct chain *c, double time)
 {
-	struct warp *x = &c->warp;
+	struct curved_step *x = &c->curved_step;
 	for (int i = 0; i < c->wide; i += W) {
 		struct power d, v;
 		power_load(&d, c->order, c->drifts, i);
@@ -132,7 +132,7 @@ static void nonlinear_arrive(struct chain *c, double time)
 			double force[TERMS];
 			for (int n = 0; n <= ORDER_HIGH; n++)
 				force[n] = c->overlaps[n][j];
-			l->impulse += warp_integral(x, force, time);
+			l->impulse += curved_integral(x, force, time);
 			l->time += elapsed;
 			l->p = l->q = 0;
 			continue;
@@ -144,9 +144,9 @@ static void nonlinear_arrive(struct chain *c, double time)
 		l->p = series_at(x->links[j].overlap, 1, time);
 		l->q = series_at(x->links[j].rate, 1, time);
 		if (j == x->master)
-			l->p = warp_overlap(x, time);
+			l->p = curved_overlap(x, time);
 		else if (x->links[j].beside)
-			l->p = warp_overlap(x, time) * series_at(x->links[j].ratio, 1, time);
+			l->p = curved_overlap(x, time) * series_at(x->links[j].ratio, 1, time);
 		l->fresh = false;
 	}
 	c->ground = fma(c->slope, elapsed, c->ground);

@@ -205,23 +205,23 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
 	vd root = vsqrt(vmax(vfma(d, d, -4.0 * c * g0), zero));
 	vm up = vless(zero, d0);
 	*t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
-	vm settled = vless(zero, zero);
-	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~settled); round++) {
+	vm converged = vless(zero, zero);
+	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~converged); round++) {
 		struct kinematics at = kinematics_at(u, order, *t);
 		vd value = sign * (at.u - g->level), curvature = sign * curvature_at(u, order, *t);
-		slope = vselect(settled, slope, sign * at.v);
+		slope = vselect(converged, slope, sign * at.v);
 		vd fall = vfma(slope, slope, vsplat(-0.5) * value * curvature);
 		vm rises = vless(zero, slope) & vless(zero, fall);
 		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
 		vd step = next - *t;
-		*t = vselect(settled, *t, next);
+		*t = vselect(converged, *t, next);
 		// the error after a step of s is near s (s curvature/slope)^2, and s^2/slope times what curvature leaves out: 1e-4 of the
 		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
 		vd small = vsplat(0x1p-20);
-		settled |= vless(vabs(step), small * *t) & vless(vabs(step * curvature), small * slope) & rises;
+		converged |= vless(vabs(step), small * *t) & vless(vabs(step * curvature), small * slope) & rises;
 	}
 	// the slope is that before the last step, which changed it by less than 2^-20
-	return sure & settled & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
+	return sure & converged & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
 	       vless(g->fourth_max * (*t * *t * *t) * vsplat(1.01 / 24), slope);
 }
 

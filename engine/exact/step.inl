@@ -69,7 +69,7 @@ LANE_INLINE vm bodies_level(const struct lanes *g)
  * Returns  t      level: lanes in which nothing has decided yet
  *          value  what is left of it
  */
-LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd separating, int n)
+LANE_SHARED vd separation_zero_rounding(struct terms *t, const struct lanes *g, vd separating, int n)
 {
 	vd a[2], made = vsplat(0);
 	for (int i = 0; i < 2; i++) {
@@ -98,7 +98,7 @@ LANE_SHARED vd separation_settle(struct terms *t, const struct lanes *g, vd sepa
  * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while separated
  *          still  lanes in which it has no velocity
  */
-LANE_SHARED vd still_settle(const struct lanes *g, int i, vd b, vd push, vm still)
+LANE_SHARED vd still_zero_rounding(const struct lanes *g, int i, vd b, vd push, vm still)
 {
 	vd u = g->u[i], made = vabs(g->body[i].stiffness * u) + vabs(g->body[i].offset);
 	made = vfma(made + vabs(g->body[i].drive * g->ground), g->dt * g->dt, vabs(push));
@@ -126,7 +126,7 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const
 	if (scope->paired)
 		separating = b[0] - b[1];
 	if (level)
-		separating = separation_settle(t, g, separating, n);
+		separating = separation_zero_rounding(t, g, separating, n);
 	vd push = vsplat(0);
 	if (scope->touching) {
 		push = vfma(t->dash, t->v[2], t->spring * t->u[2]);
@@ -136,7 +136,7 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const
 	}
 	for (int i = 0; i < (scope->paired ? 2 : 1); i++)
 		if (n == 0 && vany(t->still[i]))
-			b[i] = still_settle(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
+			b[i] = still_zero_rounding(g, i, b[i], i ? g->mass_ratio * push : push, t->still[i]);
 	for (int j = 0; j < (scope->paired ? 3 : 1); j++) {
 		t->u[j] = t->v[j];
 		t->v[j] = j < 2 ? b[j] : separating;

@@ -235,7 +235,7 @@ void pound_floor_observe_chain(void *of, const struct pound_chain_piece *chain)
 		beside->overlap = chain->overlap, beside->overlap_rate = chain->overlap_rate;
 		beside->touching = chain->touching;
 	}
-	if (chain->warped) {
+	if (chain->time_is_series) {
 		span_add(motion, chain, &(struct span){0, 1, 0, chain->length}, 0);
 		return;
 	}

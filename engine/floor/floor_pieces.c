@@ -24,10 +24,10 @@ enum {
 static const double REACH = 1.5;              /* largest rate * step of a series */
 static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
 
-/* Least rate_touch * step of a settled contact: its overlap is found from a power on by those above, which count by up to
+/* Least rate_touch * step of a quasi-static contact: its overlap is found from a power on by those above, which count by up to
  * N G/(W^2 h) and N^2/(W h)^2.  With the bodies' own damping a contact of no restitution is 1.01 times critical, so that
  * rate_touch is up to 1.15 W: below 0.3 and 0.02. */
-static const double SETTLED_LEAST = 180;
+static const double QUASI_STATIC_LEAST = 180;
 
 /* Largest acceleration of a swing that is left out, over what the bodies' are made of, however stiff the contact; and the
  * power of e by which losses take a swing from there to NOTHING_BESIDE, and more. */
@@ -236,7 +236,7 @@ static void series_contact(struct body_series *s, struct body_terms m)
 		s->y[j][s->order + 1] = m.u[j];
 }
 
-/* ---- contact that has settled ---- */
+/* ---- quasi-static contact ---- */
 
 /* How large the acceleration of a contact's own swing may be, over what the bodies' are made of, to be left out: a rounding.
  *
@@ -251,12 +251,12 @@ static double swing_nothing(const struct pound_floor_motion *motion)
 	                         : fmin(NOTHING_BESIDE * motion->rate_touch / motion->rate, SWING_MOST);
 }
 
-/* Whether a contact may be settled: its overlap is neither fast nor accelerated, as the swinging one is all the time.
+/* Whether a contact may be quasi-static: its overlap is neither fast nor accelerated, as the swinging one is all the time.
  *
  * Returns  terms  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
  */
-static bool may_settle(const struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
-                       double *terms)
+static bool may_be_quasi_static(const struct pound_floor_motion *motion,
+                                const struct pound_instant_of_task *at, double *terms)
 {
 	const struct pound_task *task = motion->task;
 	double closing = 0, slow = motion->rate / motion->rate_touch;
@@ -273,21 +273,21 @@ static bool may_settle(const struct pound_floor_motion *motion, const struct pou
 	       fmax(4 * slow * slow, swing_nothing(motion)) * *terms;
 }
 
-/* Series of a contact that has settled: its overlap follows what presses the bodies on each other, and its own swing adds
+/* Series of a quasi-static contact: its overlap follows what presses the bodies on each other, and its own swing adds
  * no more than a rounding.
  *
- * Given    terms    as may_settle has it;  s: its order and step
- * Returns  value   false: it has not settled; s is not to be used
+ * Given    terms    as may_be_quasi_static has it;  s: its order and step
+ * Returns  value   false: it is not quasi-static; s is not to be used
  *
  *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
  *   p'' = b1 - b2 - (1 + r) (K p + C p')
  *
  * with the accelerations b1, b2 of the bodies without their contact.  The overlap is that part of the solution which has a
  * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
- * b2 is by (rate/W)^2 less than what they are made of, so that few rounds settle that.
+ * b2 is by (rate/W)^2 less than what they are made of, so that few rounds suffice.
  */
-static bool series_settle(struct body_series *s, const struct pound_floor_motion *motion,
-                          const struct pound_instant_of_task *at, double terms)
+static bool series_quasi_static(struct body_series *s, const struct pound_floor_motion *motion,
+                                const struct pound_instant_of_task *at, double terms)
 {
 	const double dt = s->step;
 	const struct body_terms m = terms_of(motion->task, at, dt);
@@ -352,8 +352,8 @@ static void series_next(struct body_series *s, const struct pound_floor_motion *
 	double terms, rate = at->touching ? motion->rate_touch : motion->rate;
 	s->step = step_length(left, motion->rate);
 	s->order = order_of(motion->rate * s->step);
-	if (at->touching && rate * s->step >= SETTLED_LEAST && may_settle(motion, at, &terms) &&
-	    series_settle(s, motion, at, terms))
+	if (at->touching && rate * s->step >= QUASI_STATIC_LEAST && may_be_quasi_static(motion, at, &terms) &&
+	    series_quasi_static(s, motion, at, terms))
 		return;
 	s->step = step_length(left, rate);
 	s->order = order_of(rate * s->step);

@@ -58,26 +58,26 @@ int64_t pound_study_pilot_runs(const struct pound_study *study)
 }
 
 /* Test     unit_pilot: a_split_study_is_the_study_with_that_split */
-void pound_study_split(const struct pound_study *study, int signals, struct pound_study *settled)
+void pound_study_split(const struct pound_study *study, int signals, struct pound_study *as_split)
 {
 	const int64_t left = runs_of(study) - pound_study_pilot_runs(study);
-	*settled = *study;
-	settled->design.split = false;
-	settled->scene.excitation.signals = signals;
+	*as_split = *study;
+	as_split->design.split = false;
+	as_split->scene.excitation.signals = signals;
 	if (study->design.until.half_width > 0) {
-		settled->design.until.max_runs = left > 0 ? (int)left : 0;
+		as_split->design.until.max_runs = left > 0 ? (int)left : 0;
 		return;
 	}
-	int64_t rows = left / pound_design_row_runs(settled);
+	int64_t rows = left / pound_design_row_runs(as_split);
 	rows = rows < POUND_ROWS_MAX ? rows : POUND_ROWS_MAX;
-	settled->design.rows = rows > 0 ? (int)rows : 0;
-	settled->design.runs = 0;
+	as_split->design.rows = rows > 0 ? (int)rows : 0;
+	as_split->design.runs = 0;
 	// a net is even for a power of two in each scramble
-	const int nets = pound_design_grouping(settled).n;
-	if (!pound_design_quasi_random(settled->design.method))
+	const int nets = pound_design_grouping(as_split).n;
+	if (!pound_design_quasi_random(as_split->design.method))
 		return;
-	for (settled->design.rows = nets; settled->design.rows <= rows / 2;)
-		settled->design.rows *= 2;
+	for (as_split->design.rows = nets; as_split->design.rows <= rows / 2;)
+		as_split->design.rows *= 2;
 }
 
 /* What a number of signals is worth, of all indices taken so far. */

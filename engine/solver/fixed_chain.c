@@ -349,14 +349,14 @@ static bool newmark_solve(struct stepped_chain *c)
 }
 
 /* The branches where a solution ends; false: they are not those assumed. */
-static bool newmark_settle(struct stepped_chain *c, bool as_it_was)
+static bool newmark_round(struct stepped_chain *c, bool as_it_was)
 {
-	bool settled = true;
+	bool converged = true;
 	for (int i = 0; i < c->n; i++) {
 		struct pound_law_state next = c->at[i];
 		const double from = drift(c, c->u, i);
 		pound_fixed_follow(&c->task->floors[i].story, &next, from, from + drift(c, c->x, i));
-		settled &= pound_fixed_same_law(&next, &c->next[i]);
+		converged &= pound_fixed_same_law(&next, &c->next[i]);
 		c->next[i] = next;
 	}
 	for (int k = 0; k < c->n_links; k++) {
@@ -366,14 +366,14 @@ static bool newmark_settle(struct stepped_chain *c, bool as_it_was)
 		const struct pound_touch next = pound_fixed_touch(law, &l->touch, l->touching, l->p, p, l->q);
 		const bool touches =
 		    as_it_was ? l->touching : pound_fixed_touches(law, &next, p, 2 / c->step * change - l->q);
-		settled &= touches == l->touches && (!touches || pound_fixed_same_touch(&next, &l->next)) &&
-		           (!touches || l->next.on.form == POUND_TOUCH_STRAIGHT ||
-		            fabs(p - before) <= POUND_FIXED_SETTLED * fabs(p));
+		converged &= touches == l->touches && (!touches || pound_fixed_same_touch(&next, &l->next)) &&
+		             (!touches || l->next.on.form == POUND_TOUCH_STRAIGHT ||
+		              fabs(p - before) <= POUND_FIXED_SETTLED * fabs(p));
 		l->touches = touches;
 		l->next = next;
 		l->change = change;
 	}
-	return settled;
+	return converged;
 }
 
 /* One step of average acceleration, as that of the pair (fixed_step.c); false: no equilibrium was found.
@@ -383,17 +383,17 @@ static bool newmark_settle(struct stepped_chain *c, bool as_it_was)
 static bool newmark_advance(struct stepped_chain *c)
 {
 	const double h = c->step;
-	bool settled = false;
+	bool converged = false;
 	memcpy(c->next, c->at, sizeof *c->at * (size_t)c->n);
 	for (int k = 0; k < c->n_links; k++) {
 		c->link[k].next = c->link[k].touch;
 		c->link[k].touches = c->link[k].touching;
 		c->link[k].change = 0;
 	}
-	for (int round = 0; round < 2 * POUND_FIXED_ROUNDS && !settled; round++) {
+	for (int round = 0; round < 2 * POUND_FIXED_ROUNDS && !converged; round++) {
 		if (!newmark_solve(c))
 			return false;
-		settled = newmark_settle(c, round >= POUND_FIXED_ROUNDS);
+		converged = newmark_round(c, round >= POUND_FIXED_ROUNDS);
 	}
 	for (int i = 0; i < c->n; i++) {
 		const double v = 2 / h * c->x[i] - c->v[i];
@@ -408,7 +408,7 @@ static bool newmark_advance(struct stepped_chain *c)
 		l->touch = l->next;
 		link_note(c, l, l->touches ? pound_contact_force_on(&l->touch.on, p, q) : 0);
 	}
-	return settled;
+	return converged;
 }
 
 /* ---- central differences ---- */
@@ -612,8 +612,8 @@ static enum pound_status chain_run(struct stepped_chain *c, int n_steps, advance
 				c->link[j].p = link_sum(&c->link[j], c->u) - c->link[j].link->gap;
 				c->link[j].q = link_sum(&c->link[j], c->v);
 			}
-			const bool settled = step(c), slow = floors_note(c);
-			if (!settled || !slow || c->too_long)
+			const bool converged = step(c), slow = floors_note(c);
+			if (!converged || !slow || c->too_long)
 				return POUND_UNSTABLE;
 		}
 		if (pound_stopped(stop))

@@ -125,9 +125,9 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 	double p = c->u[0] - c->u[1] - task->gap, q = c->v[0] - c->v[1], p1 = p;
 	struct pound_law_state at[2] = {c->at[0], c->at[1]};
 	struct pound_touch touch = c->touch;
-	bool touching = c->touching, settled = false;
+	bool touching = c->touching, converged = false;
 	double d[2], a[2], b[2];
-	for (int round = 0; round < 2 * POUND_FIXED_ROUNDS && !settled; round++) {
+	for (int round = 0; round < 2 * POUND_FIXED_ROUNDS && !converged; round++) {
 		struct pound_fixed_force force =
 		    touching ? pound_fixed_force_over(&touch.on, p, p1) : (struct pound_fixed_force){0};
 		double stiff = force.slope + force.rate * (2 / h), still = force.still + force.rate * -q;
@@ -138,11 +138,11 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 			       pound_fixed_restoring(&at[i], c->u[i]) - share(task, i) * still;
 		}
 		pair_solve(a, stiff, task->mass_ratio, b, d);
-		settled = true;
+		converged = true;
 		for (int i = 0; i < 2; i++) {
 			struct pound_law_state next = c->at[i];
 			pound_fixed_follow(&task->bodies[i].backbone, &next, c->u[i], c->u[i] + d[i]);
-			settled &= pound_fixed_same_law(&next, &at[i]);
+			converged &= pound_fixed_same_law(&next, &at[i]);
 			at[i] = next;
 		}
 		const double before = p1;
@@ -151,9 +151,9 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 		bool touch_now = task->contact && pound_fixed_touches(&c->law, &next, p1, 2 / h * (d[0] - d[1]) - q);
 		if (round >= POUND_FIXED_ROUNDS)
 			touch_now = c->touching;
-		settled &= touch_now == touching && (!touching || pound_fixed_same_touch(&next, &touch)) &&
-		           (!touching || touch.on.form == POUND_TOUCH_STRAIGHT ||
-		            fabs(p1 - before) <= POUND_FIXED_SETTLED * fabs(p1));
+		converged &= touch_now == touching && (!touching || pound_fixed_same_touch(&next, &touch)) &&
+		             (!touching || touch.on.form == POUND_TOUCH_STRAIGHT ||
+		              fabs(p1 - before) <= POUND_FIXED_SETTLED * fabs(p1));
 		touching = touch_now;
 		touch = next;
 	}
@@ -167,7 +167,7 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 	c->touch = touch;
 	double overlap = c->u[0] - c->u[1] - task->gap;
 	task_note(c, touching ? pound_contact_force_on(&touch.on, overlap, c->v[0] - c->v[1]) : 0, touching, q);
-	return settled;
+	return converged;
 }
 
 /* ---- central differences ---- */
@@ -301,9 +301,9 @@ static void task_run(struct stepped_task *c, int n_steps, advance *step, const a
 		for (int k = 1; k <= n_steps && !r->status; k++) {
 			c->k = k;
 			c->ground = from + rise * k;
-			bool settled = step(c, c->ground);
+			bool converged = step(c, c->ground);
 			// written so that no number is within the limit
-			if (!settled || c->too_long[c->touching] ||
+			if (!converged || c->too_long[c->touching] ||
 			    !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
 				r->status = POUND_UNSTABLE;
 		}

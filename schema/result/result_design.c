@@ -12,7 +12,7 @@ static const char *const index_names[] = {POUND_INDICES(X)};
 #undef X
 
 /* The study that was run, where the engine chose the number of signals. */
-static struct pound_study settled(const struct pound_study *study, const struct pound_result *result)
+static struct pound_study as_run_of(const struct pound_study *study, const struct pound_result *result)
 {
 	struct pound_study as_run = *study;
 	if (result->split.signals)
@@ -175,7 +175,7 @@ bool result_design_note(const struct pound_study *study, char *text, size_t size
  */
 void result_design(struct writer *w, const struct pound_study *asked, const struct pound_result *result)
 {
-	const struct pound_study as_run = settled(asked, result), *study = &as_run;
+	const struct pound_study as_run = as_run_of(asked, result), *study = &as_run;
 	const bool nets = pound_design_quasi_random(study->design.method);
 	char note[RESULT_NOTE_SIZE];
 	writer_object(w, "design", WRITER_LINE);

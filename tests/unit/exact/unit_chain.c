@@ -269,7 +269,7 @@ static void story_add(void *into, const struct pound_chain_piece *piece)
 	story->time = piece->time + h;
 	story->u = floor->u + floor->v * h;
 	story->v = floor->v;
-	assert_false(piece->warped);
+	assert_false(piece->time_is_series);
 	for (int n = piece->order; n >= 0; n--) {
 		const double ground = n == 0 ? piece->ground : n == 1 ? piece->slope * h : 0;
 		const double a = floor->acceleration[n] - ground;

@@ -167,7 +167,7 @@ static void every_piece_leads_to_the_next(void **state)
 }
 
 /* Ten thousand radians of the contact go by in every sample in which the bodies stay pressed on each other. */
-static void a_contact_that_has_settled_is_followed_by_whole_samples(void **state)
+static void a_quasi_static_contact_is_followed_by_whole_samples(void **state)
 {
 	(void)state;
 	enum { SAMPLES = 301 };
@@ -237,7 +237,7 @@ static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 	}
 }
 
-/* A contact that has settled takes its bodies along. */
+/* A quasi-static contact takes its bodies along. */
 static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 {
 	(void)state;
@@ -367,7 +367,7 @@ static void terms_end_in_rounding(void **state)
 
 CHECK_MAIN(cmocka_unit_test(terms_end_in_rounding), cmocka_unit_test(known_impacts_come_out_to_their_digits),
            cmocka_unit_test(every_piece_leads_to_the_next),
-           cmocka_unit_test(a_contact_that_has_settled_is_followed_by_whole_samples),
+           cmocka_unit_test(a_quasi_static_contact_is_followed_by_whole_samples),
            cmocka_unit_test(a_contact_without_losses_is_followed_however_stiff),
            cmocka_unit_test(a_swing_that_takes_too_many_pieces_ends_as_chatter),
            cmocka_unit_test(a_body_that_creeps_where_it_yielded_is_followed),
