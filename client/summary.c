@@ -11,6 +11,7 @@
 #include "client/command.h"
 #include "client/table.h"
 #include "schema/result/result_json.h"
+#include "schema/result/widest_interval.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -290,78 +291,19 @@ static void print_over(const struct summary *summary)
 
 /* ---- how far they may be off ---- */
 
-/* The widest interval of one output, by number of rows. */
-struct widths {
-	const char *output;
-	char index[64];     /* "ST of f_e" */
-	double last, least; /* half widths of all rows, and the narrowest of fewer rows */
-	double rows, rows_least, rows_to_halve;
-};
-
-static struct widths widths_of(const struct reading *result, const char *output)
-{
-	static const char *const names[] = {"S1", "ST"};
-	struct widths widths = {.output = reading_text(result, "%s/name", output), .last = NAN, .least = NAN};
-	const int levels = reading_count(result, "%s/accuracy/rows", output);
-	widths.rows_to_halve = reading_number(result, "%s/accuracy/rows_to_halve", output);
-	for (int level = 0; level < levels; level++) {
-		double widest = NAN, rows = reading_number(result, "%s/accuracy/rows/%d", output, level);
-		for (int j = 0; j < reading_count(result, "%s/accuracy/inputs", output); j++)
-			for (int k = 0; k < 2; k++) {
-				double half = reading_number(result, "%s/accuracy/inputs/%d/%s_half_widths/%d", output, j,
-				                             names[k], level);
-				if (!(isfinite(half) && !(half <= widest)))
-					continue;
-				widest = half;
-				if (level == levels - 1)
-					snprintf(widths.index, sizeof widths.index, "%s of %.50s", names[k],
-					         input_name(result, output, j));
-			}
-		if (level == levels - 1) {
-			widths.last = widest;
-			widths.rows = rows;
-		} else if (!(widest >= widths.least)) {
-			widths.least = widest;
-			widths.rows_least = rows;
-		}
-	}
-	return widths;
-}
-
-/* The widest interval of all; why that of more rows is wider than that of fewer, where it is. */
+/* What is uncertain for another reason than the rows, and the widest interval. */
 static void print_accuracy(const struct reading *result)
 {
-	struct widths widest = {.last = NAN};
-	for (int c = 0; c < reading_count(result, "/cells"); c++)
-		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
-			char output[PATH_SIZE];
-			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
-			struct widths widths = widths_of(result, output);
-			if (isfinite(widths.last) && !(widths.last <= widest.last))
-				widest = widths;
-		}
+	struct widest_interval widest;
 	const char *note = reading_text(result, "/accuracy/note"),
 	           *dominant = reading_text(result, "/accuracy/dominant");
 	if (note && dominant && strcmp(dominant, "sampling") != 0)
 		table_prose(0, note);
-	if (!isfinite(widest.last))
-		return;
-	char *more = isfinite(widest.rows_to_halve)
-	                 ? command_text("; %.0f rows would halve it", widest.rows_to_halve)
-	                 : command_text("%s", "");
-	char *sentence = command_text("The widest 95 %% interval is +-%.2g, that of %s in %.60s%s.", widest.last,
-	                              widest.index, widest.output, more);
-	table_prose(0, sentence);
-	free(sentence);
-	free(more);
-	if (!(widest.last > 1.1 * widest.least))
-		return;
-	sentence = command_text(
-	    "With %.0f rows it was +-%.2g, narrower but not better: a few rare rows make much of the "
-	    "variance, and so few rows may not contain them. Quote the interval of %.0f rows.",
-	    widest.rows_least, widest.least, widest.rows);
-	table_prose(0, sentence);
-	free(sentence);
+	widest_interval_find(result, &widest);
+	if (*widest.size)
+		table_prose(0, widest.size);
+	if (*widest.narrower)
+		table_prose(0, widest.narrower);
 }
 
 /* ---- the screen ---- */

@@ -14,6 +14,7 @@
 #include "schema/figure/plot.h"
 #include "schema/json/json.h"
 #include "schema/result/result_json.h"
+#include "schema/result/widest_interval.h"
 
 enum { CELLS_MOST = 32, CELLS_OF_ALL = 4, NOTES_MOST = 64, COLUMNS_MOST = 128 };
 
@@ -180,6 +181,23 @@ static void put_warnings(struct report *report)
 	put(report, "</ul>\n");
 }
 
+/* The widest interval, and why that of fewer rows may be narrower, as items of a list. */
+static void put_widest(struct report *report)
+{
+	struct widest_interval widest;
+	struct reading *result = reading_open(report->source->json, report->source->length);
+	if (!result) {
+		report->failed = true;
+		return;
+	}
+	widest_interval_find(result, &widest);
+	if (*widest.size)
+		put_element(report, "li", widest.size);
+	if (*widest.narrower)
+		put_element(report, "li", widest.narrower);
+	reading_close(result);
+}
+
 /* Notes of the whole result, then, closed, those of its outputs and inputs. */
 static void put_notes(struct report *report)
 {
@@ -197,6 +215,7 @@ static void put_notes(struct report *report)
 			if (strcmp(notes.text[k], note) == 0)
 				notes.times[k] = 0;
 	}
+	put_widest(report);
 	put(report, "</ul>\n<details>\n<summary>notes of single outputs and inputs</summary>\n<ul>\n");
 	for (int k = 0; k < notes.n; k++) {
 		char times[40];

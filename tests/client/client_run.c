@@ -357,6 +357,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 	char *report = program_file(path, NULL);
 	assert_non_null(report);
 	assert_non_null(strstr(report, "<svg"));
+	assert_non_null(strstr(report, "+-0.062, narrower but not better"));
 	free(report);
 	program_free(&run);
 }

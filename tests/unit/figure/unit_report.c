@@ -5,6 +5,7 @@
 #include "schema/figure/report.h"
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"
+#include "schema/result/widest_interval.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
@@ -59,8 +60,9 @@ static void check_page(const char *page)
 
 static void a_report_has_every_figure_table_note_and_what_was_left_out(void **state)
 {
-	static const char *const names[] = {"sensitivity_small", "until", "floor_spectrum", "response_sweep",
-	                                    "convergence"};
+	static const char *const names[] = {"sensitivity_small", "until",          "paper_linear",
+	                                    "floor_spectrum",    "response_sweep", "convergence"};
+	int narrower = 0; /* results whose interval of all rows is not the narrowest */
 	(void)state;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		size_t n;
@@ -83,6 +85,11 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 			assert_non_null(strstr(page, reading_text(result, "/work/left_out/%d", k)));
 		if (reading_text(result, "/accuracy/note"))
 			assert_non_null(strstr(page, reading_text(result, "/accuracy/note")));
+		struct widest_interval widest;
+		widest_interval_find(result, &widest);
+		const char *item = strstr(page, widest.narrower);
+		assert_true(!*widest.narrower || (item && strncmp(item - 4, "<li>", 4) == 0));
+		narrower += *widest.narrower != 0;
 		// every table scrolls in a box of its own
 		assert_int_equal(count(page, "<div class=\"wide\""), count(page, "<table>"));
 		assert_non_null(strstr(page, "&quot;kind&quot;: &quot;"));
@@ -90,6 +97,7 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 		free(page);
 		source_free(&source);
 	}
+	assert_true(narrower > 0);
 }
 
 static void a_report_of_a_swept_study_has_the_indices_of_each_cell(void **state)

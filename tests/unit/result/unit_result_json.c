@@ -4,6 +4,7 @@
 
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"
+#include "schema/result/widest_interval.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 #include "tests/support/study_documents.h"
@@ -466,7 +467,43 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	free(document);
 }
 
-CHECK_MAIN(cmocka_unit_test(points_that_do_not_fill_their_nets_are_noted),
+// an output whose interval grows with the rows, and one whose interval shrinks and is the narrower of both
+#define WIDENING(half)                                                                            \
+	"{\"cells\": [{\"outputs\": [{\"name\": \"impulse\", \"accuracy\": {\"rows_to_halve\": 4000," \
+	" \"rows\": [250, 1000], \"inputs\": [{\"name\": \"f_2\", \"S1_half_widths\": [0.01, 0.02],"  \
+	" \"ST_half_widths\": [0.09, " half "]}]}}, {\"name\": \"force\", \"accuracy\": {"            \
+	"\"rows_to_halve\": null, \"rows\": [250, 1000], \"inputs\": [{\"name\": \"f_2\","            \
+	" \"S1_half_widths\": [null, null], \"ST_half_widths\": [0.16, 0.08]}]}}]}]}"
+
+static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(void **state)
+{
+	static const struct {
+		const char *json, *size, *narrower;
+	} cases[] = {
+	    {WIDENING("0.21"),
+	     "The widest 95 % interval is +-0.21, that of ST of f_2 in impulse; 4000 rows would halve it.",
+	     "With 250 rows it was +-0.09, narrower but not better: a few rare rows make much of the variance, "
+	     "and so few rows may not contain them. Quote the interval of 1000 rows."},
+	    // less than a tenth wider is no more than chance
+	    {WIDENING("0.095"),
+	     "The widest 95 % interval is +-0.095, that of ST of f_2 in impulse; 4000 rows would halve it.", ""},
+	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, that of ST of f_2 in force.", ""},
+	    {"{\"kind\": \"response\"}", "", ""},
+	};
+	(void)state;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		struct reading *result = reading_open(cases[k].json, strlen(cases[k].json));
+		struct widest_interval text;
+		assert_non_null(result);
+		widest_interval_find(result, &text);
+		assert_string_equal(text.size, cases[k].size);
+		assert_string_equal(text.narrower, cases[k].narrower);
+		reading_close(result);
+	}
+}
+
+CHECK_MAIN(cmocka_unit_test(the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one),
+           cmocka_unit_test(points_that_do_not_fill_their_nets_are_noted),
            cmocka_unit_test(a_result_says_why_its_design_grew_no_further),
            cmocka_unit_test(a_response_is_written_whole),
            cmocka_unit_test(timing_is_the_last_line_but_one_and_all_that_differs),
