@@ -461,18 +461,14 @@ static void *answer_aside(void *of)
 	return NULL;
 }
 
-/* Gives a request to a thread of its own, which has it from then on; false: its reply is made, for its client has too many there. */
+/* Gives a request to a thread of its own, which has it from then on; false: its client has too many there, or all have. */
 static bool put_aside(struct request *request)
 {
 	pthread_t thread;
 	request->share = share_take(&request->server->shares, request->token ? request->token : request->client);
-	if (request->share < 0) {
-		request->reply = http_problem(
-		    API_UNAVAILABLE,
-		    "too many slow answers are being prepared, for this client or in all; please try again", NULL);
-		request->replied = true;
+	if (request->share < 0)
 		return false;
-	}
+	request->aside = true;
 	request->server->aside++;
 	connection_of(request->connection)->answering = true;
 	MHD_suspend_connection(request->connection);
@@ -506,13 +502,25 @@ enum MHD_Result http_answer(void *of, struct MHD_Connection *connection, const c
 		head_refuse(&request->head, API_UNAVAILABLE, false, "the server is stopping");
 	if (request->head.fault == API_NO_FAULT && !request->replied)
 		request->replied = routes_kept(request, &request->reply);
-	if (request->head.fault == API_NO_FAULT && !request->replied && routes_slow(request) &&
-	    put_aside(request))
+	if (request->head.fault != API_NO_FAULT) {
+		request->reply = http_problem(request->head.fault, request->head.detail, NULL);
+		request->replied = true;
+	}
+	if (!request->replied && routes_slow(request)) {
+		if (put_aside(request))
+			return MHD_YES;
+		request->reply = http_problem(
+		    API_UNAVAILABLE,
+		    "too many slow answers are being prepared, for this client or in all; please try again", NULL);
+		request->replied = true;
+	}
+	struct reply reply = request->replied ? request->reply : routes_answer(request);
+	if (reply.later && put_aside(request))
 		return MHD_YES;
-	struct reply reply = request->head.fault != API_NO_FAULT
-	                         ? http_problem(request->head.fault, request->head.detail, NULL)
-	                     : request->replied ? request->reply
-	                                        : routes_answer(request);
+	if (reply.later) {
+		request->crowded = true;
+		reply = routes_answer(request);
+	}
 	request->reply.body = NULL; // they go with the reply
 	request->reply.file = 0;
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))

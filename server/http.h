@@ -64,6 +64,8 @@ struct request {
 	size_t length;
 	long long taken;             /* [bytes] of bodies that its own counts for */
 	int share;                   /* of its client, when it is in a thread of its own */
+	bool aside;                  /* it is in a thread of its own, ... */
+	bool crowded;                /* ... or is to do without, for there are too many */
 	bool replied;                /* the reply is there, kept or made by a thread of its own */
 	struct reply reply;          /* if so, until it is sent */
 	const atomic_bool *unwanted; /* nobody waits for it any more */

@@ -17,6 +17,7 @@ struct reply {
 	char etag[64];
 	int retry_after;  /* [s], 0: none */
 	bool gone;        /* the client had gone before it was made */
+	bool later;       /* none yet: the request is to have a thread of its own, or is crowded */
 	bool waits;       /* who knows it already may wait for another, when the study has changed */
 	unsigned changes; /* of the study, before it was looked at */
 };

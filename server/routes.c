@@ -181,13 +181,23 @@ static struct reply submit(struct request *request)
 	if (!study)
 		return invalid(&problems);
 	const struct options *options = request->server->options;
-	const struct cost cost = cost_of(study, options->workers), most = {.runs = options->runs_max,
-	                                                                   .cpu_s = options->cpu_max,
-	                                                                   .bytes = MIB * options->result_max,
-	                                                                   .memory = MIB * options->memory_max};
+	const struct cost most = {.runs = options->runs_max,
+	                          .cpu_s = options->cpu_max,
+	                          .bytes = MIB * options->result_max,
+	                          .memory = MIB * options->memory_max};
+	struct cost cost = cost_of(study, options->workers);
 	struct reply reply;
 	size_t length;
-	if (!cost_allowed(&cost, &most, &problems))
+	bool allowed = cost_allowed(&cost, &most, &problems);
+	if (allowed && cost_tried(&cost) && !request->crowded) {
+		if (!request->aside) {
+			study_free(study);
+			return (struct reply){.later = true};
+		}
+		cost_try(&cost, study, request->unwanted);
+		allowed = cost_allowed(&cost, &most, &problems);
+	}
+	if (!allowed)
 		reply = http_problem(API_TOO_COSTLY, "the study exceeds limits of this server, listed in `errors`",
 		                     &problems);
 	else if (!strcmp(http_argument(request, "validate_only"), "true")) {

@@ -95,7 +95,7 @@ static double record_memory(const struct pound_study *study)
 	return bytes;
 }
 
-static double seconds(const struct pound_study *study)
+static double seconds(const struct pound_study *study, int first, int behind)
 {
 	struct counts counts = {0};
 	operations_count(study, &counts);
@@ -106,9 +106,14 @@ static double seconds(const struct pound_study *study)
 	                                            : fmin(POUND_BALANCED_SIGNALS / signals, 1);
 	const enum pound_kind other = response ? POUND_KIND_SENSITIVITY : study->kind;
 	double sum = 0;
-	for (int k = 0; k < OPERATIONS; k++)
+	for (int k = first; k < behind; k++)
 		sum += counts.of[k] * (balanced * seconds_of[k][study->kind] + (1 - balanced) * seconds_of[k][other]);
 	return sum;
+}
+
+double cost_of_runs(const struct pound_study *study)
+{
+	return seconds(study, BEGIN, DRAW);
 }
 
 static double high(const struct pound_study *study)
@@ -129,7 +134,7 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 {
 	const struct pound_study like = study_separation_like(asked), *study = &like;
 	struct cost cost = {.runs = study_runs(study),
-	                    .cpu_s = seconds(study),
+	                    .cpu_s = seconds(study, 0, OPERATIONS),
 	                    .bytes = DOCUMENT_BYTES + study_separation_bytes(asked)};
 	double cells = study_cells(study), runs = (double)cost.runs, numbers; // doubles that are stored of a run
 	cost.cpu_s_high = high(study) * cost.cpu_s;
@@ -142,7 +147,8 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 		numbers =
 		    of_row > 0 ? of_row : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes +=
-		    runs * (SIGNAL_BYTES + of_row * MEASURE_BYTES) + cells * 20 * study->spectrum.n * NUMBER_BYTES;
+		    runs * ((asked->kind == POUND_KIND_SEPARATION ? 0 : SIGNAL_BYTES) + of_row * MEASURE_BYTES) +
+		    cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
 	const struct pound_run_shared shared = operations_shared(study);
 	cost.memory = STUDY_MEMORY + record_memory(study) + RESULT_MEMORY * cost.bytes +

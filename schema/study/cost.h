@@ -2,6 +2,7 @@
 #ifndef COST_H
 #define COST_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -18,6 +19,11 @@ struct cost {
 };
 
 struct cost cost_of(const struct pound_study *study, int n_workers); /* that run its blocks */
+double cost_of_runs(const struct pound_study *study);                /* [s], without reductions, as counted */
+
+/* A study that takes a while is tried for a tenth of a second at most: what a few of its runs take corrects the count. */
+bool cost_tried(const struct cost *cost);
+void cost_try(struct cost *cost, const struct pound_study *study, const atomic_bool *unwanted);
 
 /* Of a study of separation: one of another kind that takes as long, and the bytes of a result that only such a study has; of other
  * kinds the study itself, and 0. */

@@ -531,7 +531,7 @@ static void count_reductions(const struct pound_study *study, struct counts *c)
 }
 
 /* Items and, counted as such, those that are run again to check them and what lanes leave unfilled. */
-static double items_of(const struct pound_study *study)
+static double items_of(const struct pound_study *study, bool chained)
 {
 	const bool sampled = study->kind == POUND_KIND_SENSITIVITY;
 	const double items =
@@ -540,7 +540,7 @@ static double items_of(const struct pound_study *study)
 	double checks = 0;
 	if (sampled || study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		checks = fmax(items / CHECK_EVERY, fmin(items, ceil(CHECKS_LEAST / asks)));
-	return items + CHECKED * checks + TAIL / asks;
+	return items + CHECKED * checks + (chained ? 0 : TAIL / asks);
 }
 
 /* Counts what a study does.
@@ -549,10 +549,11 @@ static double items_of(const struct pound_study *study)
  */
 void operations_count(const struct pound_study *study, struct counts *c)
 {
-	const double items = items_of(study);
+	const double items = items_of(study, operations_chained(study, &study->solver)),
+	             alone = items_of(study, true);
 	struct marches m = {.n = 0};
 	c->of[STUDY] = 1;
-	count_free_pairs(study, items, c);
+	count_free_pairs(study, alone, c);
 	// what is run again for histories: of pairs as it was fitted, of rows up to that time
 	const double seconds = means_duration(study), history = fmin(study->convergence.history, seconds);
 	const double repeated = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
@@ -568,7 +569,7 @@ void operations_count(const struct pound_study *study, struct counts *c)
 			count_runs(study, &solver, items * (2 + repeated), c);
 			c->of[CLOCK]++;
 		}
-	const struct marches again = count_again(study, items, c), *lost = study->scene.n_buildings ? &m : &again;
+	const struct marches again = count_again(study, alone, c), *lost = study->scene.n_buildings ? &m : &again;
 	// no whole samples are passed at once
 	if (pound_outputs_asked(study) & POUND_ASKS_ENERGIES)
 		c->of[YIELD_STEP] += lost->n * lost->steps * lost->wide;

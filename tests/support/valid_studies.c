@@ -14,14 +14,12 @@
 #include "tests/support/valid_studies.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdarg.h>
-#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <time.h>
 
 #include "schema/study/study_json.h"
+#include "schema/study/trial.h"
 #include "tests/support/check.h"
 
 static uint64_t state_of;
@@ -271,59 +269,11 @@ struct pound_study *valid_study(uint64_t seed, char *text, int *drawn)
 	return study;
 }
 
-static double cpu_now(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* Ends what takes too long. */
-struct watch {
-	clockid_t clock;
-	double until;
-	atomic_bool stop, over;
-};
-
-static void *watch_run(void *of)
-{
-	struct watch *watch = of;
-	while (!watch->over && !watch->stop) {
-		struct timespec now;
-		clock_gettime(watch->clock, &now);
-		watch->stop = (double)now.tv_sec + 1e-9 * (double)now.tv_nsec > watch->until;
-		nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
-	}
-	return NULL;
-}
-
 /* Seconds of CPU time that a study takes, or those after which it was stopped.
  *
  * Given    most   s   after which it is
  */
 double valid_study_taken(const struct pound_study *study, double most)
 {
-	pthread_t thread;
-	const double start = cpu_now();
-	struct watch watch = {.until = start + most};
-	pthread_getcpuclockid(pthread_self(), &watch.clock);
-	assert_int_equal(pthread_create(&thread, NULL, watch_run, &watch), 0);
-	struct pound_run *run = pound_run_create_by(study, 1, &watch.stop);
-	enum pound_status status = POUND_OK;
-	if (run)
-		pound_run_stop_by(run, &watch.stop);
-	if (run)
-		pound_run_clock(run, cpu_now);
-	for (int block = 0, done = 0; run && !status && !done;) {
-		for (; block < pound_run_blocks(run) && !status; block++)
-			status = pound_run_block(run, block, 0);
-		for (int k = 0; k < pound_run_reductions(run) && !status; k++)
-			status = pound_run_reduce(run, k, 0);
-		done = !status && !pound_run_grow(run);
-	}
-	const double s = cpu_now() - start;
-	pound_run_free(run);
-	watch.over = true;
-	pthread_join(thread, NULL);
-	return s;
+	return trial_run(study, true, most, NULL).cpu_s;
 }
