@@ -159,3 +159,13 @@ void options_read(struct options *options, int argc, char **argv)
 		exit(EXIT_FAILURE);
 	}
 }
+
+static const double MIB = 1 << 20;
+
+struct cost options_study_most(const struct options *options)
+{
+	return (struct cost){.runs = options->runs_max,
+	                     .cpu_s = options->cpu_max,
+	                     .bytes = MIB * options->result_max,
+	                     .memory = MIB * options->memory_max};
+}

@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "schema/message/launcher.h"
+#include "schema/study/cost.h"
 
 struct options {
 	const char *listen;     /* address in digits */
@@ -44,5 +45,6 @@ extern const int options_count;
 void options_variable(const struct option_row *row, char *name, size_t size);
 
 void options_read(struct options *options, int argc, char **argv); /* prints and exits on a wrong one */
+struct cost options_study_most(const struct options *options);     /* that one study may take */
 
 #endif

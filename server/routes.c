@@ -34,8 +34,6 @@ enum {
 	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
 };
 
-static const double MIB = 1 << 20;
-
 static struct reply problem(enum api_fault fault, const char *detail)
 {
 	return http_problem(fault, detail, NULL);
@@ -181,23 +179,16 @@ static struct reply submit(struct request *request)
 	if (!study)
 		return invalid(&problems);
 	const struct options *options = request->server->options;
-	const struct cost most = {.runs = options->runs_max,
-	                          .cpu_s = options->cpu_max,
-	                          .bytes = MIB * options->result_max,
-	                          .memory = MIB * options->memory_max};
+	const struct cost most = options_study_most(options);
 	struct cost cost = cost_of(study, options->workers);
 	struct reply reply;
 	size_t length;
-	bool allowed = cost_allowed(&cost, &most, &problems);
-	if (allowed && cost_tried(&cost) && !request->crowded) {
-		if (!request->aside) {
-			study_free(study);
-			return (struct reply){.later = true};
-		}
+	const bool tried = cost_tried(&cost) && !request->crowded && cost_allowed(&cost, &most, &problems);
+	if (tried && request->aside)
 		cost_try(&cost, study, request->unwanted);
-		allowed = cost_allowed(&cost, &most, &problems);
-	}
-	if (!allowed)
+	if (tried && !request->aside)
+		reply = (struct reply){.later = true};
+	else if (!cost_allowed(&cost, &most, &problems))
 		reply = http_problem(API_TOO_COSTLY, "the study exceeds limits of this server, listed in `errors`",
 		                     &problems);
 	else if (!strcmp(http_argument(request, "validate_only"), "true")) {

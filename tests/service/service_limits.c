@@ -75,10 +75,10 @@ static void each_limit_is_answered_with_its_status_and_the_words_of_the_page(voi
 static void a_full_queue_is_answered_with_its_status_and_the_words_of_the_page(void **state)
 {
 	struct service *service = service_with((const char *const[][2]){{"POUNDD_QUEUE_MAX", "1"}, {NULL}}, 1);
-	char *study = service_study(SERVICE_ROWS, 10, 1), *page = program_file("server/server.md", NULL);
+	char *study = service_study(20 * SERVICE_ROWS, 10, 1), *page = program_file("server/server.md", NULL);
 	struct answer answer = {0};
 	(void)state;
-	for (int i = 0; i < 4 && answer.status != 503; i++) {
+	for (int i = 0; i < 8 && answer.status != 503; i++) {
 		answer_free(&answer);
 		answer = service_post(service, study);
 	}
