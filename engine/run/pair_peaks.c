@@ -172,52 +172,49 @@ static void notes_search(struct pound_pair_peaks *peaks)
 	peaks->n_notes = 0;
 }
 
-/* Raises the peaks to the displacement at the end of an interval, and notes it where it may have been larger inside.
- *
- * Given    p, q    u_1 - u_2 and its rate at both ends [m], [m/s]
- *          error   of the cubic through them [m]
- */
-static void interval_look(struct pound_pair_peaks *peaks, struct pound_pair_note *note, const double p[2],
-                          const double q[2], double error)
-{
-	const double third = note->length / 3, b1 = p[0] + third * q[0], b2 = p[1] - third * q[1];
-	peaks->peak[0] = fmax(peaks->peak[0], p[1]);
-	peaks->peak[1] = fmax(peaks->peak[1], -p[1]);
-	note->most[0] = fmax(b1, b2) + error;
-	note->most[1] = error - fmin(b1, b2);
-	if (note_counts(peaks, note))
-		note_add(peaks, note);
-}
-
-/* A bound of the error of the cubic through both ends of an interval; infinite where it is long.
+/* By how much the cubic through both ends of an interval may err: of the acceleration and the velocity at its start, and of the
+ * growth of the ground acceleration.  No interval is longer than a sample, and no branch stiffer than the first.
  *
  *   |u''| <= A = (|u''(0)| + h (k |v(0)| + |a'|)) / (1 - h c - k h^2)     as u''' = -(c u'' + k u' + a'), |u'| <= |v(0)| + h A
- *   |u''''| <= c |u'''| + k A,   error <= h^4/384 |u''''|
+ *   |u''''| <= c |u'''| + k A <= (c^2 + c k h + k) A + c k |v(0)| + c |a'|,   error <= h^4/384 |u''''|
  */
-static double cubic_error(const struct pound_task_body *b, const struct pound_instant_of_task *at, int i,
-                          double h)
+static void error_fill(double error[3], const struct pound_task_body *b, double h)
 {
-	const double c = b->damping, k = at->stiffness[i], slope = fabs(b->drive * at->slope), v = fabs(at->v[i]);
-	const double start = fabs(c * at->v[i] + k * at->u[i] + at->spring_offset[i] + b->drive * at->ground);
-	const double left = 1 - h * c - k * h * h;
-	if (!(left > 0.25))
-		return INFINITY;
-	const double most = (start + h * (k * v + slope)) / left;
-	return h * h * h * h / 384 * (c * (c * most + k * (v + h * most) + slope) + k * most);
+	const double c = b->damping, k = b->backbone.stiffness, left = 1 - h * c - k * h * h;
+	const double most = (c * c + c * k * h + k) / left, fourth = h * h * h * h / 384;
+	const bool is_short = left > 0.25;
+	error[0] = is_short ? fourth * most : DBL_MAX;
+	error[1] = is_short ? fourth * k * (most * h + c) : DBL_MAX;
+	error[2] = is_short ? fourth * fabs(b->drive) * (most * h + c) : DBL_MAX;
+}
+
+/* Raises the peaks to the displacement at the end of an interval, and notes it where it may have been larger inside. */
+static void interval_look(struct pound_pair_peaks *peaks, const struct pound_instant_of_task *instant)
+{
+	const struct pound_instant_of_task *from = &peaks->from;
+	const double third = instant->elapsed / 3, p = instant->u[0] - instant->u[1];
+	const double b1 = from->u[0] - from->u[1] + third * (from->v[0] - from->v[1]),
+	             b2 = p - third * (instant->v[0] - instant->v[1]);
+	double error = 0;
+	for (int i = 0; i < POUND_OSCILLATORS; i++) {
+		const struct pound_task_body *b = &peaks->bodies[i];
+		const double acceleration = b->damping * from->v[i] + from->stiffness[i] * from->u[i] +
+		                            (from->spring_offset[i] + b->drive * from->ground);
+		error += peaks->error[i][0] * fabs(acceleration) +
+		         (peaks->error[i][1] * fabs(from->v[i]) + peaks->error[i][2] * fabs(from->slope));
+	}
+	const double most[2] = {(b1 > b2 ? b1 : b2) + error, error - (b1 < b2 ? b1 : b2)};
+	peaks->peak[0] = p > peaks->peak[0] ? p : peaks->peak[0];
+	peaks->peak[1] = -p > peaks->peak[1] ? -p : peaks->peak[1];
+	if (most[0] > peaks->peak[0] || most[1] > peaks->peak[1])
+		note_add(peaks, &(struct pound_pair_note){*from, instant->elapsed, {most[0], most[1]}});
 }
 
 static void observe(void *into, const struct pound_instant_of_task *instant)
 {
 	struct pound_pair_peaks *peaks = into;
-	const struct pound_instant_of_task *from = &peaks->from;
-	if (instant->elapsed > 0 && !from->touching) {
-		struct pound_pair_note note = {.from = *from, .length = instant->elapsed};
-		double error = 0;
-		for (int i = 0; i < POUND_OSCILLATORS; i++)
-			error += cubic_error(&peaks->bodies[i], from, i, note.length);
-		interval_look(peaks, &note, (const double[2]){from->u[0] - from->u[1], instant->u[0] - instant->u[1]},
-		              (const double[2]){from->v[0] - from->v[1], instant->v[0] - instant->v[1]}, error);
-	}
+	if (instant->elapsed > 0 && !peaks->from.touching)
+		interval_look(peaks, instant);
 	peaks->from = *instant;
 	peaks->samples_left -= instant->sampled;
 	if (peaks->samples_left <= 0)
@@ -230,6 +227,7 @@ static void start(struct pound_pair_peaks *peaks, const struct pound_task *task)
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
 		peaks->bodies[i] = *b;
+		error_fill(peaks->error[i], b, task->time_step);
 		peaks->rate = fmax(peaks->rate, fmax(sqrt(b->backbone.stiffness), b->damping));
 	}
 }

@@ -18,9 +18,10 @@ struct pound_pair_note {
 struct pound_pair_peaks {
 	struct pound_task_observer observer;
 	struct pound_task_body bodies[POUND_OSCILLATORS];
-	double rate;                       /* of the faster body [rad/s] */
-	struct pound_instant_of_task from; /* the last instant */
-	int samples_left;                  /* of the ground motion */
+	double error[POUND_OSCILLATORS][3]; /* of the cubic through both ends of an interval: pair_peaks.c */
+	double rate;                        /* of the faster body [rad/s] */
+	struct pound_instant_of_task from;  /* the last instant */
+	int samples_left;                   /* of the ground motion */
 	int n_notes;
 	struct pound_pair_note notes[POUND_PAIR_NOTES];
 	// so far
