@@ -73,6 +73,8 @@ static int setup(void **state)
 	assert_non_null(mkdtemp(world.directory));
 	world.build = realpath(build ? build : "build/release", NULL);
 	assert_non_null(world.build);
+	if (!strncmp(world.build, "/tmp/", 5))
+		fail_msg("%s is in /tmp, which every node has for itself: build in another folder", world.build);
 	snprintf(world.study, sizeof world.study, "%s/study.json", world.directory);
 	snprintf(world.checkpoint, sizeof world.checkpoint, "%s/blocks", world.directory);
 	snprintf(world.out, sizeof world.out, "%s/out", world.directory);
