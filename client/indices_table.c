@@ -394,7 +394,22 @@ static void print_partial(const struct reading *result)
 	putchar('\n');
 }
 
-static void print_stopping(const struct reading *result)
+/* How many signals a row has, and what other numbers of them would have given. */
+static void print_split(const struct reading *result)
+{
+	static const char *const columns[] = {"signals", "rows", "runs", "half_width", "bias", NULL};
+	struct table *table = table_open(1, columns);
+	putchar('\n');
+	table_prose(0, reading_text(result, "/stopping/signals/note"));
+	for (int k = 0; k < reading_count(result, "/stopping/signals/choices"); k++)
+		for (int c = 0; columns[c]; c++)
+			table_number(table, reading_number(result, "/stopping/signals/choices/%d/%s", k, columns[c]));
+	table_print(table, INDENT);
+	table_close(table);
+}
+
+/* How the design grew. */
+static void print_growth(const struct reading *result)
 {
 	static const char *const columns[] = {"rows", "runs", "widest", "index", "input", "output", NULL};
 	struct table *table = table_open(1, columns);
@@ -412,6 +427,14 @@ static void print_stopping(const struct reading *result)
 	}
 	table_print(table, INDENT);
 	table_close(table);
+}
+
+static void print_stopping(const struct reading *result)
+{
+	if (reading_has(result, "/stopping/signals/note"))
+		print_split(result);
+	if (reading_has(result, "/stopping/note"))
+		print_growth(result);
 }
 
 /* What more and fewer rows cost. */

@@ -1,10 +1,11 @@
-/* summary.c - a sensitivity result on one screen.  Of few indices each with its interval and a bar:
+/* summary.c - a sensitivity result on one screen.  Where each index fits with its interval and a bar, those:
  *
  *   impulse: mean 0.8992, noise 3.8 %
  *     f_2      S1  0.243 +-0.049  ST  0.626 +-0.092  |#############       |
  *
- * of many a row for each output and a column for each input, from the lowest to the highest over cells, frequencies,
- * stories. */
+ * else a column for each input, the largest first, and both indices of each output below each other; over cells, frequencies and
+ * stories from the lowest to the highest.  What does not fit is left out in this order, and a line says so: inputs with
+ * the smallest indices, S1, outputs. */
 #include "client/summary.h"
 #include "client/cell.h"
 
@@ -19,34 +20,73 @@
 #include <string.h>
 
 enum {
-	LINES_MOST = 11, /* of indices */
+	SCREEN = 24, /* lines */
 	INPUTS_MOST = 64,
+	PARAGRAPHS = 8,
 	PATH_SIZE = 128,
-	LABEL_WIDTH = 32, /* columns of an output's name at most */
+	COLUMNS = 4,      /* inputs that fit beside each other whatever the outputs' names are */
 	INPUT_WIDTH = 14, /* of an input's, beside both indices and a bar */
-	CELL_WIDTH = 14,  /* "-0.01 to 0.74", and a blank */
+	CELL_WIDTH = 13,  /* " -0.16..-0.14", " 0.63 +-0.09" */
+	INDENT = 1,       /* of columns: four inputs fit beside both indices of names of 24 characters */
+	BOTH_WIDTH = 3,   /* " S1" */
 	CHART = 20,
 };
 
+enum { S1, ST, INDICES };
+
+static const char *const INDEX_NAMES[INDICES] = {"S1", "ST"};
+
 /* An index of one input over what a result has under one output's name. */
 struct span {
-	double low, high;
+	double low, high, half; /* half the width of the last interval */
 };
 
 struct row {
 	const char *output;
 	int n; /* outputs of that name in a cell: frequencies, stories */
-	struct span spans[INPUTS_MOST];
+	struct span spans[INDICES][INPUTS_MOST];
 };
 
 struct summary {
 	const struct reading *result;
-	bool total; /* ST has values, else S1 */
+	bool any[INDICES]; /* whether the index has a value */
 	int n_cells, n_outputs, n_rows, n_inputs;
 	struct row *rows;                /* (n_rows) */
 	const char *inputs[INPUTS_MOST]; /* (n_inputs) */
 	int order[INPUTS_MOST];          /* (n_inputs) the largest first */
 };
+
+/* Sentences that the screen begins or ends with. */
+struct paragraphs {
+	char *text[PARAGRAPHS];
+	int n;
+};
+
+/* Adds a text on the heap. */
+static void paragraph_add(struct paragraphs *paragraphs, char *text)
+{
+	if (paragraphs->n < PARAGRAPHS)
+		paragraphs->text[paragraphs->n++] = text;
+	else
+		free(text);
+}
+
+static int paragraphs_lines(const struct paragraphs *paragraphs)
+{
+	int lines = 0;
+	for (int k = 0; k < paragraphs->n; k++)
+		lines += table_prose_lines(0, paragraphs->text[k]);
+	return lines;
+}
+
+static void paragraphs_print(struct paragraphs *paragraphs)
+{
+	for (int k = 0; k < paragraphs->n; k++) {
+		table_prose(0, paragraphs->text[k]);
+		free(paragraphs->text[k]);
+	}
+	paragraphs->n = 0;
+}
 
 /* ---- what the result has ---- */
 
@@ -66,43 +106,63 @@ static struct row *row_of(struct summary *summary, const char *output)
 	    command_sure(realloc(summary->rows, (size_t)(summary->n_rows + 1) * sizeof *summary->rows));
 	struct row *row = &summary->rows[summary->n_rows++];
 	*row = (struct row){.output = output};
-	for (int j = 0; j < INPUTS_MOST; j++)
-		row->spans[j] = (struct span){NAN, NAN};
+	for (int k = 0; k < INDICES; k++)
+		for (int j = 0; j < INPUTS_MOST; j++)
+			row->spans[k][j] = (struct span){NAN, NAN, NAN};
 	return row;
 }
 
-/* Whether any index of that name has a value. */
-static bool spans_find(struct summary *summary, bool total)
+/* Half of an interval; of one without width the sign is a rounding. */
+static double half_width(const struct reading *result, const char *input, const char *index)
+{
+	return fabs(reading_number(result, "%s/%s_high", input, index) -
+	            reading_number(result, "%s/%s_low", input, index)) /
+	       2;
+}
+
+static void input_add(struct summary *summary, struct row *row, const char *output, int input)
+{
+	char at[PATH_SIZE];
+	snprintf(at, sizeof at, "%s/inputs/%d", output, input);
+	for (int k = 0; k < INDICES; k++) {
+		struct span *span = &row->spans[k][input];
+		const double value = reading_number(summary->result, "%s/%s", at, INDEX_NAMES[k]);
+		span->low = fmin(span->low, value);
+		span->high = fmax(span->high, value);
+		span->half = half_width(summary->result, at, INDEX_NAMES[k]);
+		summary->any[k] |= isfinite(value);
+	}
+	if (input == summary->n_inputs)
+		summary->inputs[summary->n_inputs++] = input_name(summary->result, output, input);
+}
+
+static void spans_find(struct summary *summary)
 {
 	const struct reading *result = summary->result;
-	bool any = false;
-	summary->total = total;
-	summary->n_rows = summary->n_outputs = summary->n_inputs = 0;
 	for (int c = 0; c < summary->n_cells; c++)
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
-			char output[PATH_SIZE];
+			char output[PATH_SIZE / 2];
 			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
 			const char *name = reading_text(result, "%s/name", output);
 			struct row *row = row_of(summary, name ? name : "?");
 			row->n += c == 0;
 			summary->n_outputs += c == 0;
-			for (int j = 0; j < reading_count(result, "%s/inputs", output) && j < INPUTS_MOST; j++) {
-				double value = reading_number(result, "%s/inputs/%d/%s", output, j, total ? "ST" : "S1");
-				row->spans[j].low = fmin(row->spans[j].low, value);
-				row->spans[j].high = fmax(row->spans[j].high, value);
-				any = any || isfinite(value);
-				if (j == summary->n_inputs)
-					summary->inputs[summary->n_inputs++] = input_name(result, output, j);
-			}
+			for (int j = 0; j < reading_count(result, "%s/inputs", output) && j < INPUTS_MOST; j++)
+				input_add(summary, row, output, j);
 		}
-	return any;
+}
+
+/* The index that includes interactions, where it has values. */
+static int main_index(const struct summary *summary)
+{
+	return summary->any[ST] ? ST : S1;
 }
 
 static double highest(const struct summary *summary, int input)
 {
 	double most = -INFINITY;
 	for (int k = 0; k < summary->n_rows; k++)
-		most = fmax(most, summary->rows[k].spans[input].high);
+		most = fmax(most, summary->rows[k].spans[main_index(summary)][input].high);
 	return most;
 }
 
@@ -125,16 +185,13 @@ static void chart(double share)
 	printf("  |%.*s%*s|", (int)full, "####################", CHART - (int)full, "");
 }
 
-/* ---- one cell, few outputs ---- */
+/* ---- every index with its interval and a bar ---- */
 
 /* "  ST  0.626 +-0.092"; nothing where no input has a value. */
 static void print_estimate(const struct reading *result, const char *input, const char *index)
 {
-	double value = reading_number(result, "%s/%s", input, index);
-	// of an interval without width the sign is a rounding
-	double half = fabs(reading_number(result, "%s/%s_high", input, index) -
-	                   reading_number(result, "%s/%s_low", input, index)) /
-	              2;
+	const double value = reading_number(result, "%s/%s", input, index);
+	const double half = half_width(result, input, index);
 	if (!isfinite(value))
 		printf("  %s %6s %7s", index, "-", "");
 	else if (half > 0 && half < 0.0005)
@@ -154,79 +211,93 @@ static double rows_needed(const struct reading *result, const char *output)
 	return colon ? strtod(colon + 1, NULL) : NAN;
 }
 
-static void print_output(const struct summary *summary, int output)
+/* "impulse: mean 0.89, noise 4 %", for the caller to free. */
+static char *output_head(const struct reading *result, const char *output)
+{
+	static const struct measure measures[] = {{"noise_share", ", noise %.2g %%", 100}, {NULL, NULL, 0}};
+	const double needed = rows_needed(result, output);
+	char *head = cell_output(result, output, measures);
+	return isfinite(needed) ? command_append(head, ", needs %.0f rows", needed) : head;
+}
+
+static void print_input(const struct summary *summary, const char *output, int j, int width)
+{
+	char input[PATH_SIZE], *label = table_cut(summary->inputs[j], width);
+	fputs("    ", stdout);
+	table_say(label);
+	printf("%*s", width - table_width(label), "");
+	free(label);
+	snprintf(input, sizeof input, "%s/inputs/%d", output, j);
+	print_estimate(summary->result, input, "S1");
+	if (summary->any[ST])
+		print_estimate(summary->result, input, "ST");
+	const double share = reading_number(summary->result, "%s/%s", input, INDEX_NAMES[main_index(summary)]);
+	if (isfinite(share))
+		chart(share);
+	putchar('\n');
+}
+
+/* The lines of this form, which it prints or only counts; a line of each index with a bar needs one cell. */
+static int bars(const struct summary *summary, bool print)
 {
 	const struct reading *result = summary->result;
-	char at[PATH_SIZE], input[PATH_SIZE + 32];
-	int width = 0;
-	snprintf(at, sizeof at, "/cells/0/outputs/%d", output);
-	static const struct measure measures[] = {{"noise_share", ", noise %.2g %%", 100}, {NULL, NULL, 0}};
-	const double needed = rows_needed(result, at);
-	char *head = cell_output(result, at, measures);
-	if (isfinite(needed))
-		head = command_append(head, ", needs %.0f rows", needed);
-	table_prose(2, head);
-	free(head);
+	// an input of a model of one's own has no path
+	const bool own = !reading_text(result, "/cells/0/outputs/0/inputs/0/path");
+	bool narrow = false;
+	int width = 0, lines = 2;
+	if (print)
+		printf("Share of an output's variance due to an input alone (S1), to an input with its\n"
+		       "interactions (ST), to the randomness of %s (noise); +-: 95 %% interval.\n",
+		       own ? "replicates" : "motions");
 	for (int j = 0; j < summary->n_inputs; j++) {
-		int n = table_width(summary->inputs[j]);
+		const int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
 	}
 	width = width > INPUT_WIDTH ? INPUT_WIDTH : width;
-	for (int k = 0; k < summary->n_inputs; k++) {
-		int j = summary->order[k];
-		char *label = table_cut(summary->inputs[j], width);
-		fputs("    ", stdout);
-		table_say(label);
-		printf("%*s", width - table_width(label), "");
-		free(label);
-		snprintf(input, sizeof input, "%s/inputs/%d", at, j);
-		print_estimate(result, input, "S1");
-		if (summary->total)
-			print_estimate(result, input, "ST");
-		double share = reading_number(result, "%s/%s", input, summary->total ? "ST" : "S1");
-		if (isfinite(share))
-			chart(share);
-		putchar('\n');
-	}
-}
-
-static void print_outputs(const struct summary *summary)
-{
-	// an input of a model of one's own has no path
-	const bool own = !reading_text(summary->result, "/cells/0/outputs/0/inputs/0/path");
-	printf("\nShare of an output's variance due to an input alone (S1), to an input with its\n"
-	       "interactions (ST), to the randomness of %s (noise); +-: 95 %% interval.\n",
-	       own ? "replicates" : "motions");
-	bool narrow = false;
 	for (int o = 0; o < summary->n_outputs; o++) {
-		char at[PATH_SIZE];
-		snprintf(at, sizeof at, "/cells/0/outputs/%d", o);
-		print_output(summary, o);
-		narrow |= isfinite(rows_needed(summary->result, at));
+		char output[PATH_SIZE / 2];
+		snprintf(output, sizeof output, "/cells/0/outputs/%d", o);
+		char *head = output_head(result, output);
+		lines += table_prose_lines(2, head) + summary->n_inputs;
+		narrow |= isfinite(rows_needed(result, output));
+		if (print)
+			table_prose(2, head);
+		for (int k = 0; print && k < summary->n_inputs; k++)
+			print_input(summary, output, summary->order[k], width);
+		free(head);
 	}
-	if (narrow)
+	if (print && narrow)
 		puts("Intervals of what needs more rows are too narrow: few rows hold the variance.");
+	return lines + narrow;
 }
 
-/* ---- many of both ---- */
+/* ---- a column for each input ---- */
 
-/* No "-0.00". */
-static double rounded(double value)
+/* How much of it fits. */
+struct layout {
+	bool both;     /* both indices of an output, below each other */
+	int outputs;   /* shown */
+	int label;     /* columns of their names and of "S1" */
+	int columns;   /* inputs side by side */
+	int n_columns; /* inputs shown, in blocks below each other */
+};
+
+static bool is_range(const struct summary *summary, const struct row *row)
 {
-	return fabs(value) < 0.005 ? 0.0 : value;
+	return summary->n_cells > 1 || row->n > 1;
 }
 
-static void print_span(const struct span *span)
+static int at_most(int value, int most)
 {
-	char text[32] = "-";
-	if (isfinite(span->low)) {
-		snprintf(text, sizeof text, "%.2f to %.2f", rounded(span->low), rounded(span->high));
-		if (span->low == span->high)
-			snprintf(text, sizeof text, "%.2f", rounded(span->high));
-	}
-	printf("%*s", CELL_WIDTH, text);
+	return value < most ? value : most;
 }
 
+static int at_least(int value, int least)
+{
+	return value > least ? value : least;
+}
+
+/* The name of an output, for the caller to free. */
 static char *row_label(const struct row *row, int width)
 {
 	char *whole = row->n > 1 ? command_text("%s (%d)", row->output, row->n) : command_text("%s", row->output);
@@ -235,158 +306,270 @@ static char *row_label(const struct row *row, int width)
 	return label;
 }
 
-static void print_rows(const struct summary *summary)
+static struct layout layout_within(const struct summary *summary, int lines)
 {
-	int width = 0, shown = summary->n_rows < LINES_MOST - 1 ? summary->n_rows : LINES_MOST - 1;
-	for (int k = 0; k < shown; k++) {
-		char *label = row_label(&summary->rows[k], LABEL_WIDTH);
-		width = table_width(label) > width ? table_width(label) : width;
+	struct layout layout = {.both = summary->any[S1] && summary->any[ST] && 1 + 2 * summary->n_rows <= lines};
+	const int each = layout.both ? 2 : 1;
+	layout.outputs = at_most(summary->n_rows, at_least((lines - 1) / each, 1));
+	const int most = TABLE_WIDTH - INDENT - BOTH_WIDTH - at_most(summary->n_inputs, COLUMNS) * CELL_WIDTH;
+	for (int k = 0; k < layout.outputs; k++) {
+		char *label = row_label(&summary->rows[k], most);
+		layout.label = at_least(layout.label, table_width(label));
 		free(label);
 	}
-	int columns = (TABLE_WIDTH - 2 - width) / CELL_WIDTH;
-	columns = columns < summary->n_inputs ? columns : summary->n_inputs;
-	printf("%*s", 2 + width, "");
-	for (int k = 0; k < columns; k++) {
+	layout.label += layout.both ? BOTH_WIDTH : 0;
+	layout.columns = at_most((TABLE_WIDTH - INDENT - layout.label) / CELL_WIDTH, summary->n_inputs);
+	layout.n_columns =
+	    at_most(layout.columns * at_least(lines / (1 + each * layout.outputs), 1), summary->n_inputs);
+	return layout;
+}
+
+/* What a layout leaves out, for the caller to free; NULL: nothing. */
+static char *left_out(const struct summary *summary, const struct layout *layout)
+{
+	char *text = command_text("%s", "not shown:");
+	const size_t nothing = strlen(text);
+	if (layout->outputs < summary->n_rows)
+		text = command_append(text, " %d of %d outputs;", summary->n_rows - layout->outputs, summary->n_rows);
+	if (!layout->both && summary->any[S1] && summary->any[ST])
+		text = command_append(text, " S1;");
+	if (layout->n_columns < summary->n_inputs)
+		text = command_append(text, " %d of %d inputs, those with the smallest indices;",
+		                      summary->n_inputs - layout->n_columns, summary->n_inputs);
+	if (strlen(text) > nothing)
+		return command_append(text, " --table inputs has all");
+	free(text);
+	return NULL;
+}
+
+/* Two decimals, of large numbers none; no "-0.00". */
+static const char *value_text(double value, char text[24])
+{
+	snprintf(text, 24, fabs(value) < 9.995 ? "%.2f" : "%.0f", fabs(value) < 0.005 ? 0.0 : value);
+	return text;
+}
+
+static void print_span(const struct span *span, bool range)
+{
+	char text[64] = "-", low[24], high[24];
+	const double half = span->half;
+	value_text(span->low, low);
+	value_text(range ? span->high : half, high);
+	if (isfinite(span->low) && (range ? strcmp(low, high) != 0 : isfinite(half)))
+		snprintf(text, sizeof text, range ? "%s..%s" : "%s +-%s", low,
+		         !range && half > 0 && half < 0.005 ? "<.01" : high);
+	else if (isfinite(span->low))
+		snprintf(text, sizeof text, "%s", low);
+	printf(" %*s", CELL_WIDTH - 1, text);
+}
+
+/* One index of an output; `name`: of the output, empty below its own first line. */
+static void print_index(const struct summary *summary, const struct layout *layout, const struct row *row,
+                        int index, const char *name, int first)
+{
+	const int end = at_most(first + layout->columns, layout->n_columns);
+	printf("%*s", INDENT, "");
+	table_say(name);
+	printf("%*s%s", layout->label - (layout->both ? 2 : 0) - table_width(name), "",
+	       layout->both ? INDEX_NAMES[index] : "");
+	for (int k = first; k < end; k++)
+		print_span(&row->spans[index][summary->order[k]], is_range(summary, row));
+	putchar('\n');
+}
+
+/* Inputs `first` and on, as many as fit beside each other. */
+static void print_block(const struct summary *summary, const struct layout *layout, int first)
+{
+	const int end = at_most(first + layout->columns, layout->n_columns);
+	printf("%*s", INDENT + layout->label, "");
+	for (int k = first; k < end; k++) {
 		char *name = table_cut(summary->inputs[summary->order[k]], CELL_WIDTH - 1);
-		command_tame(name);
-		printf("%*s%s", CELL_WIDTH - table_width(name), "", name);
+		printf("%*s", CELL_WIDTH - table_width(name), "");
+		table_say(name);
 		free(name);
 	}
 	putchar('\n');
-	for (int r = 0; r < shown; r++) {
-		char *label = row_label(&summary->rows[r], LABEL_WIDTH);
-		fputs("  ", stdout);
-		table_say(label);
-		printf("%*s", width - table_width(label), "");
+	for (int r = 0; r < layout->outputs; r++) {
+		char *label = row_label(&summary->rows[r], layout->label - (layout->both ? BOTH_WIDTH : 0));
+		if (layout->both) {
+			print_index(summary, layout, &summary->rows[r], S1, label, first);
+			print_index(summary, layout, &summary->rows[r], ST, "", first);
+		} else
+			print_index(summary, layout, &summary->rows[r], main_index(summary), label, first);
 		free(label);
-		for (int k = 0; k < columns; k++)
-			print_span(&summary->rows[r].spans[summary->order[k]]);
-		putchar('\n');
 	}
-	if (shown < summary->n_rows)
-		printf("  not shown: %d of %d outputs\n", summary->n_rows - shown, summary->n_rows);
-	if (columns < summary->n_inputs)
-		printf("  not shown: %d of %d inputs, those with the smallest indices\n", summary->n_inputs - columns,
-		       summary->n_inputs);
 }
 
-/* What the rows are, and what their ranges are over. */
-static void print_over(const struct summary *summary)
+/* What the numbers are, and what their ranges are over; for the caller to free. */
+static char *intro_of(const struct summary *summary, bool both)
 {
-	char *cells = summary->n_cells > 1 ? command_text(" the %d cells of the sweep", summary->n_cells)
-	                                   : command_text("%s", "");
-	const char *of = "";
-	for (int k = 0; k < summary->n_rows; k++)
-		if (summary->rows[k].n > 1)
-			of = " frequencies or stories (their number)";
-	char *sentence = command_text(
-	    "Share of an output's variance due to an input %s (%s)%s%s%s%s:",
-	    summary->total ? "with its interactions with others" : "alone", summary->total ? "ST" : "S1",
-	    *cells || *of ? ", lowest to highest over" : "", cells, *cells && *of ? " and" : "", of);
-	putchar('\n');
-	table_prose(0, sentence);
-	free(sentence);
-	free(cells);
+	bool places = false, values = false;
+	for (int k = 0; k < summary->n_rows; k++) {
+		places |= summary->rows[k].n > 1;
+		values |= !is_range(summary, &summary->rows[k]);
+	}
+	char *text = command_text("Share of an output's variance due to an input %s%s%s",
+	                          both || !summary->any[ST] ? "alone (S1)" : "", both ? " and " : "",
+	                          summary->any[ST] ? "with its interactions (ST)" : "");
+	if (summary->n_cells > 1 || places)
+		text = command_append(text, ", lowest to highest over");
+	if (summary->n_cells > 1)
+		text = command_append(text, " the %d cells of the sweep%s", summary->n_cells, places ? " and" : "");
+	return command_append(text, "%s%s.", places ? " frequencies or stories (their number)" : "",
+	                      values ? "; +-: 95 % interval" : "");
 }
 
-/* ---- how far they may be off ---- */
-
-/* What is uncertain for another reason than the rows, and the widest interval. */
-static void print_accuracy(const struct reading *result)
+/* The outputs of all cells whose intervals are too narrow, for the caller to free; NULL: none. */
+static char *too_narrow(const struct reading *result)
 {
-	struct widest_interval widest;
-	const char *note = reading_text(result, "/accuracy/note"),
-	           *dominant = reading_text(result, "/accuracy/dominant");
-	if (note && dominant && strcmp(dominant, "sampling") != 0)
-		table_prose(0, note);
-	widest_interval_find(result, &widest);
-	if (*widest.size)
-		table_prose(0, widest.size);
-	if (*widest.narrower)
-		table_prose(0, widest.narrower);
+	int n = 0, of = 0;
+	double rows = 0;
+	for (int c = 0; c < reading_count(result, "/cells"); c++)
+		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++, of++) {
+			char output[PATH_SIZE / 2];
+			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
+			const double needed = rows_needed(result, output);
+			n += isfinite(needed);
+			rows = fmax(rows, needed);
+		}
+	return n == 0 ? NULL
+	              : command_text(
+	                    "Intervals of %d of %d outputs are too narrow: few rows hold the variance; they "
+	                    "need up to %.0f rows.",
+	                    n, of, rows);
 }
 
-/* ---- the screen ---- */
-
-static void print_numbers(const struct reading *result)
+/* In so many lines. */
+static void print_columns(const struct summary *summary, int lines)
 {
-	const char *name = reading_text(result, "/name");
+	char *intro = intro_of(summary, summary->any[S1] && summary->any[ST]),
+	     *narrow = too_narrow(summary->result);
+	lines -= table_prose_lines(0, intro) + (narrow ? table_prose_lines(0, narrow) : 0);
+	free(intro);
+	struct layout layout = layout_within(summary, lines);
+	char *missing = left_out(summary, &layout);
+	if (missing) {
+		layout = layout_within(summary, lines - table_prose_lines(INDENT, missing));
+		free(missing);
+		missing = left_out(summary, &layout);
+	}
+	intro = intro_of(summary, layout.both);
+	table_prose(0, intro);
+	free(intro);
+	for (int first = 0; first < layout.n_columns; first += layout.columns)
+		print_block(summary, &layout, first);
+	if (missing)
+		table_prose(INDENT, missing);
+	if (narrow)
+		table_prose(0, narrow);
+	free(missing);
+	free(narrow);
+}
+
+/* ---- what is above and below ---- */
+
+static char *runs_of(const struct reading *result)
+{
 	double failed = 0, dropped = 0, runs = 0;
-	for (int c = 0; c < reading_count(result, "/cells"); c++) {
-		double of_cell = reading_number(result, "/cells/%d/runs_failed", c);
+	const int n_cells = reading_count(result, "/cells");
+	for (int c = 0; c < n_cells; c++) {
+		const double of_cell = reading_number(result, "/cells/%d/runs_failed", c);
 		const double rows = reading_number(result, "/cells/%d/rows_dropped", c);
 		failed += isfinite(of_cell) ? of_cell : 0;
 		dropped += isfinite(rows) ? rows : 0;
 		runs += reading_number(result, "/cells/%d/runs", c);
 	}
-	table_prose(0, name ? name : "a study without a name");
-	fputs("sensitivity study: ", stdout);
-	if (reading_count(result, "/cells") > 1)
-		printf("%d cells, ", reading_count(result, "/cells"));
+	char *text = command_text("sensitivity study: ");
+	if (n_cells > 1)
+		text = command_append(text, "%d cells, ", n_cells);
 	if (reading_has(result, "/design"))
-		printf("%.0f rows (%s), ", reading_number(result, "/design/rows"),
-		       reading_text(result, "/design/method"));
-	printf("%.0f runs", runs);
+		text = command_append(text, "%.0f rows (%s), ", reading_number(result, "/design/rows"),
+		                      reading_text(result, "/design/method"));
+	text = command_append(text, "%.0f runs", runs);
 	if (failed > 0)
-		printf(", %.0f failed and %.0f rows left out with them", failed, dropped);
+		text = command_append(text, ", %.0f failed and %.0f rows left out with them", failed, dropped);
 	if (reading_has(result, "/timing"))
-		printf(", %.3g s with %.0f threads", reading_number(result, "/timing/wall_s"),
-		       reading_number(result, "/timing/threads"));
-	putchar('\n');
-	if (reading_has(result, "/partial")) {
-		char *sentence =
-		    command_text("PARTIAL RESULT, %.0f of %.0f rows: %s", reading_number(result, "/partial/rows"),
-		                 reading_number(result, "/partial/rows_most"), reading_text(result, "/partial/note"));
-		table_prose(0, sentence);
-		free(sentence);
-	}
-	if (reading_has(result, "/stopping")) {
-		char *sentence = command_text("%.0f rows: %s", reading_number(result, "/stopping/rows"),
-		                              reading_text(result, "/stopping/note"));
-		table_prose(0, sentence);
-		free(sentence);
-	}
+		text = command_append(text, ", %.3g s with %.0f threads", reading_number(result, "/timing/wall_s"),
+		                      reading_number(result, "/timing/threads"));
+	return text;
 }
 
-static void print_more(const struct reading *result)
+static void above_find(const struct reading *result, struct paragraphs *above)
+{
+	const char *name = reading_text(result, "/name");
+	paragraph_add(above, command_text("%s", name ? name : "a study without a name"));
+	paragraph_add(above, runs_of(result));
+	if (reading_has(result, "/partial"))
+		paragraph_add(above, command_text("PARTIAL RESULT, %.0f of %.0f rows: %s",
+		                                  reading_number(result, "/partial/rows"),
+		                                  reading_number(result, "/partial/rows_most"),
+		                                  reading_text(result, "/partial/note")));
+	// what its sentence goes on with is in the table
+	const char *split = reading_text(result, "/stopping/signals/note");
+	if (split)
+		paragraph_add(above, command_text("%.*s", (int)strcspn(split, ";"), split));
+	if (reading_has(result, "/stopping/note"))
+		paragraph_add(above, command_text("%.0f rows: %s", reading_number(result, "/stopping/rows"),
+		                                  reading_text(result, "/stopping/note")));
+}
+
+static char *tables_of(const struct reading *result)
 {
 	static const char *const names[] = {
 #define X(name) #name,
 	    RESULT_TABLES(X)
 #undef X
 	};
-	char *line = command_text("%s", "More with --table all");
+	char *line = command_text("More with --table all");
 	for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
-		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k])) {
-			char *longer = command_text("%s, %s", line, names[k]);
-			free(line);
-			line = longer;
-		}
-	table_prose(0, line);
-	free(line);
-	puts("Figures: pound plot, or pound report for all of it on one page");
+		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k]))
+			line = command_append(line, ", %s", names[k]);
+	return line;
 }
 
+/* What is uncertain for another reason than the rows, the widest interval, and where the rest is. */
+static void below_find(const struct reading *result, struct paragraphs *below)
+{
+	struct widest_interval widest;
+	const char *note = reading_text(result, "/accuracy/note"),
+	           *dominant = reading_text(result, "/accuracy/dominant");
+	if (note && dominant && strcmp(dominant, "sampling") != 0)
+		paragraph_add(below, command_text("%s", note));
+	widest_interval_find(result, &widest);
+	if (*widest.size)
+		paragraph_add(below, command_text("%s", widest.size));
+	if (*widest.narrower)
+		paragraph_add(below, command_text("%s", widest.narrower));
+	paragraph_add(below, tables_of(result));
+	paragraph_add(below, command_text("Figures: pound plot, or pound report for all of it on one page"));
+}
+
+/* ---- the screen ---- */
+
+/* Prints the indices to quote, how far they may be off and why, and where the rest is.
+ *
+ * Test     client_run: a_table_without_a_name_is_a_summary_of_one_screen
+ */
 void summary_print(const struct reading *result)
 {
 	struct summary summary = {.result = result, .n_cells = reading_count(result, "/cells")};
-	bool any = spans_find(&summary, true) || spans_find(&summary, false);
+	struct paragraphs above = {0}, below = {0};
+	spans_find(&summary);
 	order_find(&summary);
-	print_numbers(result);
-	if (!any) {
+	above_find(result, &above);
+	below_find(result, &below);
+	const int lines = SCREEN - 1 - paragraphs_lines(&above) - paragraphs_lines(&below);
+	paragraphs_print(&above);
+	putchar('\n');
+	if (!summary.any[S1] && !summary.any[ST]) {
 		const char *note = reading_text(result, "/cells/0/outputs/0/note");
-		puts("\nNo index to quote has a value.");
+		puts("No index to quote has a value.");
 		if (note)
 			table_prose(0, note);
-	} else {
-		if (summary.n_cells == 1 && summary.n_outputs * (1 + summary.n_inputs) <= LINES_MOST)
-			print_outputs(&summary);
-		else {
-			print_over(&summary);
-			print_rows(&summary);
-		}
-	}
-	print_accuracy(result);
-	print_more(result);
+	} else if (summary.n_cells == 1 && bars(&summary, false) <= lines)
+		bars(&summary, true);
+	else
+		print_columns(&summary, lines);
+	paragraphs_print(&below);
 	free(summary.rows);
 }

@@ -114,22 +114,34 @@ void table_say(const char *text)
 	free(tame);
 }
 
-void table_prose(int indent, const char *text)
+/* Breaks a text into lines, which it prints or only counts. */
+static int prose(int indent, const char *text, bool print)
 {
 	char *words = command_sure(strdup(text)), *rest;
-	int column = TABLE_WIDTH;
+	int column = TABLE_WIDTH, n = 0;
 	command_tame(words);
 	for (char *word = strtok_r(words, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
-		int width = table_width(word);
-		bool fits = column + 1 + width <= TABLE_WIDTH;
-		if (!fits && word != words)
-			putchar('\n');
-		pad(fits ? 1 : indent);
-		fputs(word, stdout);
+		const int width = table_width(word);
+		const bool fits = column + 1 + width <= TABLE_WIDTH;
+		n += !fits;
 		column = (fits ? column + 1 : indent) + width;
+		if (print)
+			printf("%s%*s%s", !fits && n > 1 ? "\n" : "", fits ? 1 : indent, "", word);
 	}
-	putchar('\n');
+	if (print)
+		putchar('\n');
 	free(words);
+	return n > 0 ? n : 1;
+}
+
+void table_prose(int indent, const char *text)
+{
+	prose(indent, text, true);
+}
+
+int table_prose_lines(int indent, const char *text)
+{
+	return prose(indent, text, false);
 }
 
 /* Prints one cell in its column; the last column of text is not padded. */

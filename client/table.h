@@ -32,5 +32,6 @@ char *table_cut(const char *text, int width);
 void table_say(const char *text);
 /* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
 void table_prose(int indent, const char *text);
+int table_prose_lines(int indent, const char *text); /* how many that are */
 
 #endif

@@ -304,15 +304,35 @@ static void check_screen(const char *what, char *text)
 		fail_msg("%s: %d lines:\n%s", what, n, text);
 }
 
+#define OF_TWO   "\"force_amplification\", \"impulse\"]"
+#define OF_THREE "\"force_amplification\", \"impulse\", \"peak_displacement_m\"]"
+#define OF_EIGHT                                                                        \
+	"\"force_amplification\", \"impulse\", \"peak_displacement_m\", \"contact_count\"," \
+	"\"contact_time_s\", \"peak_displacement_free_m\", \"peak_displacement_right_m\","  \
+	"\"peak_displacement_free_right_m\"]"
+#define OF_SIXTEEN                                                                            \
+	"\"peak_acceleration_m_s2\", \"peak_acceleration_right_m_s2\", \"peak_contact_force_n\"," \
+	"\"peak_acceleration_free_m_s2\", \"peak_acceleration_free_right_m_s2\","                 \
+	"\"force_amplification_right\", \"acceleration_amplification\", \"peak_approach_speed_m_s\"," OF_EIGHT
+
 static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 {
 	static const struct {
 		const char *example, *was, *is, *words;
 	} cases[] = {
-	    // a sweep: from the lowest to the highest of 24 cells
+	    // a sweep: from the lowest to the highest of 24 cells, both indices of each output
 	    {"paper", "\"rows\": 1000", "\"rows\": 40", "lowest to highest over the 24 cells"},
+	    {"paper", "\"rows\": 1000", "\"rows\": 40",
+	     "\n force_amplification  S1  -0.08..0.35   0.00..0.61  -0.17..0.60  -0.01..0.17\n"
+	     "                      ST  -0.03..0.54   0.20..0.43   0.36..0.85  -0.14..0.44\n"},
 	    {"spectrum_sensitivity", "\"seed\"", "\"seed\"", "floor_spectrum (8)"},
-	    {"ratios", "\"rows\": 500", "\"rows\": 60", "not shown: 1 of 5 inputs"},
+	    {"two_storeys", "\"seed\"", "\"seed\"", " of 19 inputs, those with the smallest indices;"},
+	    // three outputs have both indices; eight have one, and it is said which is missing
+	    {"paper_linear", OF_TWO, OF_THREE, "\n force_amplification S1  0.36 +-0.05  0.0"},
+	    {"paper_linear", OF_TWO, OF_THREE, "\n                     ST  0.83 +-0.05  0.4"},
+	    {"paper_linear", OF_TWO, OF_EIGHT, "\n not shown: S1; --table inputs has all\n"},
+	    {"paper_linear", OF_TWO, OF_SIXTEEN, " of 16 outputs; S1; --table inputs has all\n"},
+	    {"auto_signals", "\"seed\"", "\"seed\"", "\nwith 3 signals the widest interval is foreseen"},
 	    {"until", "\"seed\"", "\"seed\"", "every interval of S1 and ST has a half-width of at most 0.15"},
 	    {"sensitivity_small", "\"name\": \"f_2\"",
 	     "\"name\": \"frequency of the right building, fixed base\"", "    frequ...d base  S1"},
