@@ -1,4 +1,4 @@
-# make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of test names, MPI=1: ranks.
+# make run, make test: all a fresh Debian 12 needs.  MODE=asan|tsan|debug, CC=clang, T=substring of names of tests, MPI=1: ranks.
 MODE ?= release
 # make's own rules would try to build march_*.d, which it includes, out of exact.inl
 MAKEFLAGS += --no-builtin-rules

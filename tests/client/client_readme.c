@@ -263,6 +263,51 @@ static void every_file_that_a_page_names_is_there(void **state)
 	globfree(&pages);
 }
 
+/* Whether a program of tests has a name in its own, or in that of one of its tests. */
+static bool test_there(const glob_t *programs, const char *name)
+{
+	bool there = false;
+	for (size_t i = 0; i < programs->gl_pathc && !there; i++) {
+		char *text = program_file(programs->gl_pathv[i], &(size_t){0});
+		there = strstr(strrchr(programs->gl_pathv[i], '/'), name);
+		for (const char *at = text; !there && (at = strstr(at, "\nstatic void ")); at++) {
+			const char *found = strstr(at, name);
+			there = found && found < at + strcspn(at, "(");
+		}
+		free(text);
+	}
+	return there;
+}
+
+static void every_test_that_a_page_names_is_there(void **state)
+{
+	glob_t pages = pages_all(), programs;
+	int n = 0, missing = 0;
+	(void)state;
+	assert_int_equal(glob("tests/unit/*/unit_*.c", 0, NULL, &programs), 0);
+	assert_int_equal(glob("tests/service/service_*.c", GLOB_APPEND, NULL, &programs), 0);
+	assert_int_equal(glob("tests/client/client_*.c", GLOB_APPEND, NULL, &programs), 0);
+	assert_int_equal(glob("tests/long/soak_*.c", GLOB_APPEND, NULL, &programs), 0);
+	for (size_t i = 0; i < pages.gl_pathc; i++) {
+		char *text = program_file(pages.gl_pathv[i], &(size_t){0}), name[80];
+		for (const char *at = text; (at = strstr(at, "T=")); at++) {
+			if (at == text || !strchr(" `", at[-1]) || sscanf(at, "T=%79[a-z0-9_]", name) != 1)
+				continue;
+			n++;
+			if (!test_there(&programs, name)) {
+				check_report("%s: no test or program has %s in its name", pages.gl_pathv[i], name);
+				missing++;
+			}
+		}
+		free(text);
+	}
+	check_report("%d tests named", n);
+	assert_int_equal(missing, 0);
+	assert_true(n > 50);
+	globfree(&pages);
+	globfree(&programs);
+}
+
 /* A heading as a link names it: small letters, - for a blank, nothing for other signs. */
 static bool is_anchor(const char *heading, const char *anchor)
 {
@@ -355,6 +400,7 @@ static void every_command_of_the_readme_and_the_docs_works(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(every_file_that_a_page_names_is_there),
+           cmocka_unit_test(every_test_that_a_page_names_is_there),
            cmocka_unit_test(every_link_between_the_pages_leads_to_a_heading),
            cmocka_unit_test(every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it),
            cmocka_unit_test(every_distribution_stands_in_the_docs_with_its_parameters_and_rules),

@@ -38,12 +38,11 @@ int check_count(int brief, int soak)
 
 int check_run(const char *program, const struct CMUnitTest *tests, int n)
 {
-	const char *wanted = getenv("T");
+	const char *wanted = getenv("T"), *slash = strrchr(program, '/'), *name = slash ? slash + 1 : program;
 	char pattern[128];
-	if (wanted && *wanted) {
+	if (wanted && *wanted && !strstr(name, wanted)) {
 		snprintf(pattern, sizeof pattern, "*%s*", wanted);
 		cmocka_set_test_filter(pattern);
 	}
-	const char *name = strrchr(program, '/');
-	return _cmocka_run_group_tests(name ? name + 1 : program, tests, (size_t)n, NULL, NULL);
+	return _cmocka_run_group_tests(name, tests, (size_t)n, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* check.h - what every test program includes: cmocka, and a comparison that shows both numbers to 17 digits.
  *
- * A program is `tests/unit_<stem>.c` with one CHECK_MAIN(test, test, ...) line; T=substring runs the tests it names. */
+ * A program is `tests/unit_<stem>.c` with one CHECK_MAIN(test, test, ...) line; T=substring runs the tests, and the
+ * programs, that have it in their names. */
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -26,7 +27,7 @@ void check_report(const char *format, ...) __attribute__((format(printf, 1, 2)))
 int check_count(int brief, int soak);
 bool check_soaks(void); /* POUND_SOAK is set: the machine is quiet, and times may be judged */
 
-/* Runs a table of tests under the name of the program, only those that T names when it is set. */
+/* Runs a table of tests under the name of the program; when T is set and not in that name, only those that it names. */
 int check_run(const char *program, const struct CMUnitTest *tests, int n);
 
 #define CHECK_MAIN(...)                                                          \

@@ -561,25 +561,17 @@ static void a_figure_that_a_result_has_not_says_what_it_needs(void **state)
 	}
 }
 
-int main(void)
-{
-	const struct CMUnitTest tests[] = {
-	    cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
-	    cmocka_unit_test(ticks_of_any_range_are_few_and_inside),
-	    cmocka_unit_test(the_text_of_a_tick_has_the_digits_it_needs),
-	    cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),
-	    cmocka_unit_test(a_figure_has_a_mark_for_each_index),
-	    cmocka_unit_test(a_name_stays_text),
-	    cmocka_unit_test(a_long_name_keeps_its_beginning_and_its_end),
-	    cmocka_unit_test(a_curve_shows_points_without_neighbors),
-	    cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
-	    cmocka_unit_test(what_has_no_value_says_so),
-	    cmocka_unit_test(a_force_is_drawn_for_each_contact),
-	    cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
-	    cmocka_unit_test(the_golden_figures_have_not_changed),
-	    cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
-	    cmocka_unit_test(a_result_lists_the_figures_that_it_has),
-	    cmocka_unit_test(every_figure_and_argument_stands_in_the_docs),
-	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
-}
+CHECK_MAIN(cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
+           cmocka_unit_test(ticks_of_any_range_are_few_and_inside),
+           cmocka_unit_test(the_text_of_a_tick_has_the_digits_it_needs),
+           cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),
+           cmocka_unit_test(a_figure_has_a_mark_for_each_index), cmocka_unit_test(a_name_stays_text),
+           cmocka_unit_test(a_long_name_keeps_its_beginning_and_its_end),
+           cmocka_unit_test(a_curve_shows_points_without_neighbors),
+           cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
+           cmocka_unit_test(what_has_no_value_says_so), cmocka_unit_test(a_force_is_drawn_for_each_contact),
+           cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
+           cmocka_unit_test(the_golden_figures_have_not_changed),
+           cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
+           cmocka_unit_test(a_result_lists_the_figures_that_it_has),
+           cmocka_unit_test(every_figure_and_argument_stands_in_the_docs))
