@@ -372,11 +372,12 @@ static void print_outputs(const struct reading *result, const char *name)
 					SECTIONS[k].print(result, output);
 		}
 		for (int k = 0; reading_has(result, "%s/not_applicable/%d", cell, k); k++) {
-			fputs("\n", stdout);
-			table_say(reading_text(result, "%s/not_applicable/%d/name", cell, k));
-			fputs(": does not apply, it ", stdout);
-			table_say(reading_text(result, "%s/not_applicable/%d/note", cell, k));
-			fputs("\n", stdout);
+			char *line = command_text("%s: does not apply, it %s",
+			                          reading_text(result, "%s/not_applicable/%d/name", cell, k),
+			                          reading_text(result, "%s/not_applicable/%d/note", cell, k));
+			putchar('\n');
+			table_prose(0, line);
+			free(line);
 		}
 	}
 }

@@ -2,6 +2,7 @@
 #include "client/show.h"
 
 #include "client/cell.h"
+#include "client/command.h"
 #include "client/indices_table.h"
 #include "client/summary.h"
 #include "client/table.h"
@@ -152,44 +153,91 @@ static void response(const struct reading *result)
 	}
 }
 
-/* The mean errors of each setting; the largest ones are in the JSON and the CSV. */
-static void convergence(const struct reading *result)
+/* An error to two digits. */
+static double two_digits(double value)
 {
-	static const char *const columns[] = {"method",  "step_s",  "tol",   "failed", "u_max",   "demand",
-	                                      "impulse", "history", "order", "cpu_s",  "x event", NULL};
-	static const char *const members[] = {"displacement_error_mean", "demand_error_mean",
-	                                      "impulse_error_mean", "history_error_mean", "order"};
-	struct table *table = table_open(3, columns);
-	double event = reading_number(result, "/timing/run_cpu_s/0");
+	char text[32];
+	snprintf(text, sizeof text, "%.1e", value);
+	return isfinite(value) ? strtod(text, NULL) : NAN;
+}
+
+/* What a solver was run with: its step or its tolerance; NULL: neither. */
+static const char *setting_of(const struct reading *result, int row, char text[32])
+{
+	const double step = reading_number(result, "/rows/%d/step_s", row);
+	const double tolerance = reading_number(result, "/rows/%d/tolerance", row);
+	if (isfinite(step))
+		snprintf(text, 32, "%.4g s", step);
+	else if (isfinite(tolerance))
+		snprintf(text, 32, "%.4g", tolerance);
+	else
+		return NULL;
+	return text;
+}
+
+/* Whether a solver is run with time steps, else with tolerances. */
+static bool is_stepped(const struct reading *result, const char *method)
+{
+	bool stepped = false;
 	for (int row = 0; row < reading_count(result, "/rows"); row++) {
-		double failed = reading_number(result, "/rows/%d/runs_failed", row);
-		double cpu = reading_number(result, "/timing/run_cpu_s/%d", row);
-		table_text(table, reading_text(result, "/rows/%d/method", row));
-		table_number(table, reading_number(result, "/rows/%d/step_s", row));
-		table_number(table, reading_number(result, "/rows/%d/tolerance", row));
-		table_number(table, failed > 0 ? failed : NAN);
-		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
-			table_number(table, reading_number(result, "/rows/%d/%s", row, members[m]));
-		table_number(table, cpu);
-		table_number(table, cpu / event);
+		const char *of_row = reading_text(result, "/rows/%d/method", row);
+		stepped |=
+		    of_row && strcmp(of_row, method) == 0 && isfinite(reading_number(result, "/rows/%d/step_s", row));
 	}
-	puts("\nrelative errors against the first row, means over the signals; cpu_s of one run;\n"
-	     "history: over history_s from the start");
-	table_print(table, 2);
-	table_close(table);
-	const char *method, *before = "\norder over all settings: ";
+	return stepped;
+}
+
+/* How fast the errors of each solver fall.  A tolerance is no step: the exponent of its error is no order. */
+static void print_orders(const struct reading *result)
+{
+	const char *method;
+	putchar('\n');
 	for (int i = 0; (method = reading_member(result, i, "/orders")); i++) {
-		double order = reading_number(result, "/orders/%s", method);
+		const double order = reading_number(result, "/orders/%s", method);
 		if (!isfinite(order))
 			continue;
+		const bool stepped = is_stepped(result, method);
 		// errors that do not fall with the setting are roundings: they have no order
-		if (fabs(order) < 0.005)
-			printf("%s%s -", before, method);
-		else
-			printf("%s%s %.2f", before, method, order);
-		before = ", ";
+		const char *setting = stepped ? "step" : "tolerance", *end = stepped ? ", the observed order" : "";
+		char *line =
+		    fabs(order) < 0.005
+		        ? command_text("%s: the history's error does not depend on the %s", method, setting)
+		        : command_text("%s: the history's error falls as %s^%.2f%s", method, setting, order, end);
+		table_prose(0, line);
+		free(line);
+	}
+}
+
+/* The mean errors of each setting; the largest ones and the order from row to row are in the JSON and the CSV. */
+static void convergence(const struct reading *result)
+{
+	static const char *const columns[] = {"method",  "setting", "failed", "u_max",   "demand",
+	                                      "impulse", "history", "cpu_s",  "x event", NULL};
+	static const char *const members[] = {"displacement_error_mean", "demand_error_mean",
+	                                      "impulse_error_mean", "history_error_mean"};
+	struct table *table = table_open(2, columns);
+	const double event = reading_number(result, "/timing/run_cpu_s/0");
+	for (int row = 0; row < reading_count(result, "/rows"); row++) {
+		char setting[32];
+		const double failed = reading_number(result, "/rows/%d/runs_failed", row);
+		const double cpu = reading_number(result, "/timing/run_cpu_s/%d", row);
+		table_text(table, reading_text(result, "/rows/%d/method", row));
+		table_text(table, setting_of(result, row, setting));
+		table_number(table, failed > 0 ? failed : NAN);
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+			table_number(table, two_digits(reading_number(result, "/rows/%d/%s", row, members[m])));
+		table_number(table, two_digits(cpu));
+		table_number(table, two_digits(cpu / event));
 	}
 	putchar('\n');
+	table_prose(0, "Relative errors against the event solver, means over the signals: of the largest "
+	               "displacement (u_max), ductility demand and impulse, and of the displacement's history "
+	               "over the first seconds of the motion (history_s of the study). setting: time step, of "
+	               "the adaptive solver its tolerance. cpu_s: CPU seconds of one run, also as a multiple of "
+	               "the event solver's.");
+	table_print(table, 2);
+	table_close(table);
+	print_orders(result);
 }
 
 /* The mean spectra, and the peaks of the first beside what Eq. (21) has there. */

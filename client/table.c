@@ -172,14 +172,17 @@ static struct layout layout_of(const struct table *table, int indent)
 		layout.width[column] = n > layout.width[column] ? n : layout.width[column];
 		layout.right[column] |= cell->is_number;
 	}
+	int used = indent - GAP;
 	for (int c = 0; c < table->n_columns; c++) {
 		int *width = &layout.width[c], n = table_width(table->names[c]);
 		*width = table->n_cells && !*width ? 0 : n > *width ? n : *width;
-		if (c<table->n_keys && * width> KEY_MOST)
-			*width = KEY_MOST;
 		if (*width > TABLE_WIDTH - indent)
 			*width = TABLE_WIDTH - indent;
+		used += *width ? *width + GAP : 0;
 	}
+	for (int c = 0; c < table->n_keys && used > TABLE_WIDTH; c++)
+		if (layout.width[c] > KEY_MOST)
+			layout.width[c] = KEY_MOST;
 	return layout;
 }
 
