@@ -1,4 +1,5 @@
-/* Memory of a server: what studies take beside what is estimated before, and what becomes of those that are too large. */
+/* What a server estimates: CPU time, which a trial corrects; memory beside what studies take, and what becomes of those that are
+ * too large. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,6 +7,7 @@
 
 #include "schema/examples/examples.h"
 #include "schema/json/json_pointer.h"
+#include "schema/study/cost.h"
 #include "schema/study/study_json.h"
 #include "tests/support/service.h"
 
@@ -256,7 +258,30 @@ static void a_study_that_takes_three_times_its_estimate_says_so(void **state)
 	service_free(service);
 }
 
-CHECK_MAIN(cmocka_unit_test(a_study_that_takes_three_times_its_estimate_says_so),
+/* A server tries what takes a while: its estimate is of this machine, and not the count that a process without a trial makes. */
+static void what_takes_a_while_is_tried(void **state)
+{
+	struct service *service = service_with((const char *const[][2]){{NULL}}, 1);
+	struct problems problems;
+	(void)state;
+	for (int tried = 0; tried < 2; tried++) {
+		char *text = service_study(tried ? 100 * SERVICE_ROWS : 2, 10, 1);
+		struct pound_study *study = study_from_json(text, strlen(text), &problems);
+		assert_non_null(study);
+		const struct cost counted = cost_of(study, 1);
+		assert_int_equal(cost_tried(&counted), tried);
+		const double cpu_s = estimated(service, text, "estimated_cpu_s");
+		// as many digits as a document has
+		assert_int_equal(fabs(cpu_s / counted.cpu_s - 1) > 1e-9, tried);
+		study_free(study);
+		free(text);
+	}
+	service_stop(service);
+	service_free(service);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_takes_a_while_is_tried),
+           cmocka_unit_test(a_study_that_takes_three_times_its_estimate_says_so),
            cmocka_unit_test(the_memory_of_a_study_is_estimated),
            cmocka_unit_test(a_study_too_large_for_the_memory_is_refused_with_both_numbers),
            cmocka_unit_test(two_studies_that_do_not_fit_together_run_one_after_the_other))
