@@ -251,6 +251,22 @@ void draw_text(struct drawing *drawing, const struct label *label, const char *t
 	grow(drawing, label->y + size / 3);
 }
 
+/* The last blank among the first n bytes, one between a number and its unit only where there is no other; 0: none. */
+static size_t last_blank(const char *text, size_t n)
+{
+	size_t any = 0;
+	for (size_t blank = n; blank > 0; blank--) {
+		const unsigned char before = (unsigned char)text[blank - 1];
+		if (text[blank] != ' ')
+			continue;
+		// a digit, or the last byte of a superscript one
+		if ((before < '0' || before > '9') && before < 0x80)
+			return blank;
+		any = any ? any : blank;
+	}
+	return any;
+}
+
 double draw_prose(struct drawing *drawing, const struct label *label, const char *text, int lines)
 {
 	struct label here = *label;
@@ -262,10 +278,7 @@ double draw_prose(struct drawing *drawing, const struct label *label, const char
 			draw_text(drawing, &here, text);
 			return here.y + 1.35 * size;
 		}
-		// back to the last blank, if there is one
-		size_t blank = n;
-		while (blank > 0 && text[blank] != ' ')
-			blank--;
+		const size_t blank = last_blank(text, n);
 		n = blank > 0 ? blank : n > 0 ? n : whole;
 		char *part = strndup(text, n);
 		if (part)

@@ -35,7 +35,7 @@ static const char STYLE[] =
     "table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums}"
     "caption{text-align:left;padding:.3rem 0}"
     "th,td{padding:.15rem .4rem;border-bottom:1px solid #dfe3e8;text-align:right}"
-    "th:first-child,td:first-child,.text{text-align:left;overflow-wrap:anywhere}.wide{overflow-x:auto}"
+    "th:first-child,td:first-child,.text{text-align:left}.text{overflow-wrap:anywhere}.wide{overflow-x:auto}"
     "summary{cursor:pointer;padding:.3rem 0}"
     "pre{overflow-x:auto;background:#f3f5f7;padding:.8rem;font-size:.85rem}.muted{color:#57606a}"
     "@media screen and (prefers-color-scheme:dark){body{color:#eceff2;background:#14171b}"

@@ -435,7 +435,7 @@ static void draw_contacts(struct plot *plot, const struct line *line, struct pan
 	double *y = x + line->n, *low = y + line->n, *high = low + line->n;
 	panel->across = axis_across(line);
 	panel->up = axis_linear((struct range){0, 1});
-	panel->y_label = "signals with contact";
+	panel->y_label = "with contact";
 	panel->room = 40;
 	panel_draw(&plot->d, panel);
 	for (int k = 0; k < line->n; k++) {

@@ -403,6 +403,29 @@ static void a_contact_in_time_has_a_mark_in_its_cell_alone(void **state)
 	free(figure.svg);
 }
 
+static void a_line_does_not_end_between_a_number_and_its_unit(void **state)
+{
+	static const struct {
+		const char *text, *first;
+	} cases[] = {{"gap 0 m, right mass 1 kg", ">gap 0 m, right mass<"},
+	             {"gap 0 m, right mass 10\u2076 kg", ">gap 0 m, right mass<"},
+	             {"mass 123456789012345 kilogram", ">mass<"},
+	             {"123456789012345 kilogram", ">123456789012345<"}};
+	(void)state;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		struct drawing d;
+		size_t n;
+		draw_init(&d, 400);
+		draw_prose(&d, &(struct label){.y = 20, .fit = draw_width(cases[k].text, DRAW_TEXT_SIZE) - 8},
+		           cases[k].text, 2);
+		char *svg = draw_take(&d, "title", "sentence", &n);
+		assert_non_null(svg);
+		if (!strstr(svg, cases[k].first))
+			fail_msg("no '%s' in %s", cases[k].first, svg);
+		free(svg);
+	}
+}
+
 static void the_golden_figures_have_not_changed(void **state)
 {
 	// pound plot NAME tests/cases/figures/SOURCE >tests/cases/figures/NAME.svg, then look at it
@@ -571,6 +594,7 @@ CHECK_MAIN(cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
            cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
            cmocka_unit_test(what_has_no_value_says_so), cmocka_unit_test(a_force_is_drawn_for_each_contact),
            cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
+           cmocka_unit_test(a_line_does_not_end_between_a_number_and_its_unit),
            cmocka_unit_test(the_golden_figures_have_not_changed),
            cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
            cmocka_unit_test(a_result_lists_the_figures_that_it_has),
