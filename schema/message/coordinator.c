@@ -56,7 +56,7 @@ struct group {
 	struct known known[STUDIES_MAX];
 	struct out *out; /* (n_out_max) */
 	int n_out, n_out_max;
-	uint64_t refused[COORDINATOR_REFUSED_MAX];
+	uint64_t refused[STUDIES_MAX];
 	int n_refused;
 	double *values; /* (n_values) of one block */
 	size_t n_values;
@@ -127,14 +127,24 @@ static void refuse(struct group *g, struct known *k, const char *why)
 {
 	say(g, "refused for this study: %s", why);
 	k->standing = REFUSED;
-	if (g->n_refused < COORDINATOR_REFUSED_MAX)
-		g->refused[g->n_refused++] = k->id;
+	assert(g->n_refused < STUDIES_MAX); // each has its place among the studies that the group knows
+	g->refused[g->n_refused++] = k->id;
 	for (int i = g->n_out - 1; i >= 0; i--)
 		if (g->out[i].id == k->id && g->out[i].waits) {
 			give_back(g, &g->out[i]);
 			out_remove(g, &g->out[i]);
 			k->n_out--;
 		}
+}
+
+/* A study that was refused has ended. */
+static void refused_forget(struct group *g, uint64_t id)
+{
+	int kept = 0;
+	for (int i = 0; i < g->n_refused; i++)
+		if (g->refused[i] != id)
+			g->refused[kept++] = g->refused[i];
+	g->n_refused = kept;
 }
 
 /* Lets go of studies that have ended here; false: the connection failed. */
@@ -155,6 +165,7 @@ static bool drop_ended(struct group *g)
 					out_remove(g, &g->out[i]);
 					k->n_out--;
 				}
+			refused_forget(g, k->id);
 			const bool unanswered = k->standing == SENT;
 			k->standing = DROPPED;
 			k->n_out += unanswered; // the design

@@ -13,7 +13,7 @@
 #include "schema/message/launcher.h"
 #include "schema/message/message.h"
 
-enum { COORDINATOR_GROUPS_MAX = 256, COORDINATOR_REFUSED_MAX = 64 };
+enum { COORDINATOR_GROUPS_MAX = 256 };
 
 /* A study whose blocks are assigned; it outlives the blocks that are taken. */
 struct coordinator_study {
