@@ -229,13 +229,21 @@ static void study_given(struct um_bridge *b)
 {
 	const cJSON *given = cJSON_GetObjectItemCaseSensitive(config_of(b), "study");
 	const char *absent = example_text(STUDY_ABSENT);
-	char *text = given ? cJSON_PrintUnformatted(given) : NULL;
+	char *text = NULL;
+	size_t length = strlen(absent);
 	b->place = given ? "/config/study" : "";
+	if (given) {
+		struct writer w;
+		writer_init(&w);
+		w.line = 0; // indented, a hostile one is 20 times as long
+		json_write(&w, NULL, given, NULL, NULL);
+		text = writer_take(&w, &length);
+	}
 	if (given && !text)
 		b->problems.status = PROBLEMS_NOMEM;
 	else
-		study_read(b, given ? text : absent, strlen(given ? text : absent));
-	cJSON_free(text);
+		study_read(b, given ? text : absent, length);
+	free(text);
 }
 
 /* ---- input ---- */

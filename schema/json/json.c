@@ -1,11 +1,9 @@
-/* json.c - JSON text -> cJSON tree, after the strict check. */
+/* json.c - JSON text -> cJSON tree, after the strict check, and back. */
 #include "schema/json/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "schema/json/json_writer.h"
 
 enum { CJSON_NUMBER_MAX = 63 }; // cJSON 1.7 copies a number into 64 bytes and cuts the rest off
 
@@ -52,4 +50,35 @@ cJSON *json_parse(const char *text, size_t length, struct json_fault *fault)
 	cJSON *tree = cJSON_ParseWithLengthOpts(copy, length + 1, NULL, true);
 	free(copy);
 	return tree;
+}
+
+_Static_assert((int)WRITER_DEPTH_MAX >= (int)JSON_DEPTH_MAX, "what was read can be written");
+
+/* What holds no other object or array is on one line. */
+static enum writer_layout layout_of(const cJSON *value)
+{
+	const cJSON *child;
+	cJSON_ArrayForEach(child, value) if (cJSON_IsObject(child) || cJSON_IsArray(child)) return WRITER_LINES;
+	return WRITER_LINE;
+}
+
+/* Writes a value of a tree.
+ *
+ * Test     service_bridge: every_error_of_the_protocol_has_its_type_status_and_message; unit_suite
+ */
+void json_write(struct writer *w, const char *name, const cJSON *value, json_replace *replace, void *with)
+{
+	if (cJSON_IsObject(value) || cJSON_IsArray(value)) {
+		int k = 0;
+		(cJSON_IsObject(value) ? writer_object : writer_array)(w, name, layout_of(value));
+		for (const cJSON *child = value->child; child; child = child->next, k++)
+			if (!replace || !replace(with, value, child, k))
+				json_write(w, child->string, child, replace, with);
+		writer_end(w);
+	} else if (cJSON_IsNumber(value))
+		writer_number(w, name, value->valuedouble);
+	else if (cJSON_IsBool(value))
+		writer_bool(w, name, cJSON_IsTrue(value));
+	else
+		writer_text(w, name, value->valuestring); // null has none
 }

@@ -23,7 +23,7 @@ enum writer_layout {
 	WRITER_LINE,  /* all that is inside on one line */
 };
 
-enum { WRITER_DEPTH_MAX = 16, WRITER_NUMBER_SIZE = 32 };
+enum { WRITER_DEPTH_MAX = 32, WRITER_NUMBER_SIZE = 32 };
 
 struct writer {
 	char *text;

@@ -51,8 +51,6 @@ struct copy {
 	enum form form;
 };
 
-static void write_value(struct copy *copy, const char *name, const cJSON *value);
-
 /* Writes a record in the form of the copy. */
 static void write_record(struct copy *copy, const cJSON *record, int k)
 {
@@ -64,7 +62,7 @@ static void write_record(struct copy *copy, const cJSON *record, int k)
 		char word[32];
 		snprintf(word, sizeof word, " %s ", member->string);
 		if (!strstr(forms[copy->form].dropped, word))
-			write_value(copy, member->string, member);
+			json_write(&copy->w, member->string, member, NULL, NULL);
 	}
 	if (copy->form == HASHES)
 		writer_text(&copy->w, "sha256", study_source_of(copy->read, k)->sha256);
@@ -84,33 +82,14 @@ static void write_record(struct copy *copy, const cJSON *record, int k)
 	writer_end(&copy->w);
 }
 
-/* What holds no other object or array is on one line. */
-static enum writer_layout layout_of(const cJSON *value)
+/* Writes the records that the copy is about in its form, all else as it is. */
+static bool replace(void *with, const cJSON *parent, const cJSON *child, int k)
 {
-	const cJSON *child;
-	cJSON_ArrayForEach(child, value) if (cJSON_IsObject(child) || cJSON_IsArray(child)) return WRITER_LINES;
-	return WRITER_LINE;
-}
-
-/* Writes a value as it is; numbers read back to the same doubles. */
-static void write_value(struct copy *copy, const char *name, const cJSON *value)
-{
-	struct writer *w = &copy->w;
-	if (cJSON_IsObject(value) || cJSON_IsArray(value)) {
-		int k = 0;
-		(cJSON_IsObject(value) ? writer_object : writer_array)(w, name, layout_of(value));
-		for (const cJSON *child = value->child; child; child = child->next, k++)
-			if (value == copy->records && is_file(child) == forms[copy->form].of_file)
-				write_record(copy, child, k);
-			else
-				write_value(copy, child->string, child);
-		writer_end(w);
-	} else if (cJSON_IsNumber(value))
-		writer_number(w, name, value->valuedouble);
-	else if (cJSON_IsBool(value))
-		writer_bool(w, name, cJSON_IsTrue(value));
-	else
-		writer_text(w, name, value->valuestring); // null has none
+	struct copy *copy = with;
+	const bool about = parent == copy->records && is_file(child) == forms[copy->form].of_file;
+	if (about)
+		write_record(copy, child, k);
+	return about;
 }
 
 static char *copied(const struct study_document *document, const struct pound_study *study, enum form form,
@@ -122,7 +101,7 @@ static char *copied(const struct study_document *document, const struct pound_st
 		return NULL;
 	struct copy copy = {.records = records_of(root), .read = study, .form = form};
 	writer_init(&copy.w);
-	write_value(&copy, NULL, root);
+	json_write(&copy.w, NULL, root, replace, &copy);
 	cJSON_Delete(root);
 	return writer_take(&copy.w, length);
 }

@@ -146,6 +146,19 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	refused(service, "/Evaluate", body, "InvalidInput",
 	        "/config/study/scene/oscillators: is required: an array of 2 elements; /config/study/inputs: is "
 	        "required");
+	// every digit of the study counts: with 15 of them this is 1
+	snprintf(
+	    body, sizeof body,
+	    "{%s, \"config\": {\"study\": {\"scene\": {\"contact\": {\"restitution\": 1.0000000000000002}}}}}",
+	    right);
+	refused(service, "/Evaluate", body, "InvalidInput",
+	        "/config/study/scene/contact/restitution: must be in [0, 1]");
+	// as deep as JSON may be
+	snprintf(body, sizeof body,
+	         "{%s, \"config\": {\"study\": "
+	         "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}}",
+	         right);
+	refused(service, "/Evaluate", body, "InvalidInput", "/config/study: must be");
 	snprintf(body, sizeof body, "{%s, \"config\": {\"study\": %s}}", right, example_text("response"));
 	refused(service, "/Evaluate", body, "InvalidInput", "/config/study/kind: must be \"sensitivity\"");
 	snprintf(body, sizeof body, "{%s, \"config\": {\"study\": %s}}", right,
