@@ -459,7 +459,7 @@ static void draw_contacts(struct plot *plot, const struct line *line, struct pan
 		draw_mark(&plot->d, &(struct mark){.series = 2, .size = 3.5}, x[k], y[k], NULL);
 }
 
-static void draw_cells(struct plot *plot, const char *path)
+static void draw_cells(struct plot *plot, const char *path, const char *title)
 {
 	static const struct key keys[] = {
 	    {.name = "left, with pounding",
@@ -484,12 +484,16 @@ static void draw_cells(struct plot *plot, const char *path)
 	     .marked = true},
 	};
 	struct line lines[COLUMNS_MOST];
-	char across[PLOT_TEXT];
-	const char *same[PATHS_MOST];
+	char across[PLOT_TEXT], sweep[PLOT_TEXT], more[PLOT_TEXT + 32];
+	const char *same[PATHS_MOST], *other[PATHS_MOST];
 	int all, n = lines_of(plot, path, COLUMNS_MOST, lines, &all);
 	if (n == 0)
 		return;
-	int n_same = paths_of(lines, n, path, true, same);
+	int n_same = paths_of(lines, n, path, true, same), n_other = paths_of(lines, n, path, false, other);
+	// what is swept and the same in all panels shown
+	plot_sweep_text(lines[0].cells[0], n_other, other, sweep);
+	snprintf(more, sizeof more, "means over the signals%s%s", *sweep ? "; " : "", sweep);
+	plot_head(plot, title, more);
 	plot_path_name(path, across);
 	double top = draw_legend(&plot->d, 5, keys, plot->y) + 6;
 	int columns = panel_columns(&plot->d, n, PANEL_NARROWEST + 20);
@@ -513,6 +517,7 @@ void plot_responses(struct plot *plot)
 	const cJSON *cell = cells_of(plot->result) ? plot_cell(plot) : NULL;
 	const cJSON *signals = plot_member(cell ? cell : plot->result, "signals");
 	const char *path = cell && !plot->choice->cell ? path_across(plot, plot->result) : NULL;
+	static const char title[] = "Peak displacements with and without pounding";
 	char number[2][32], sweep[PLOT_TEXT];
 	if (*plot->fault)
 		return;
@@ -520,12 +525,12 @@ void plot_responses(struct plot *plot)
 		fault_x(plot);
 		return;
 	}
-	plot_head(plot, "Peak displacements with and without pounding",
-	          path ? "means over the signals" : plot_sweep_text(cell, 0, NULL, sweep));
 	if (path)
-		draw_cells(plot, path);
-	else
+		draw_cells(plot, path, title);
+	else {
+		plot_head(plot, title, plot_sweep_text(cell, 0, NULL, sweep));
 		draw_signals(plot, signals);
+	}
 	snprintf(plot->sentence, sizeof plot->sentence,
 	         "Left oscillator, first ground motion: %s m with pounding, %s m without.",
 	         draw_number(peak_of(plot_first(signals), 0, false), number[0]),

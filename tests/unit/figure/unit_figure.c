@@ -403,6 +403,24 @@ static void a_contact_in_time_has_a_mark_in_its_cell_alone(void **state)
 	free(figure.svg);
 }
 
+static void panels_of_a_sweep_say_what_all_of_them_share(void **state)
+{
+	char *document = study_documents_with(
+	    example_text("gap"), "\"sweep\": [",
+	    "\"sweep\": [{\"path\": \"/oscillators/0/mass_kg\", \"values\": [1, 2]},"
+	    " {\"path\": \"/contact/restitution\", \"values\": [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]}, ");
+	struct figure_source source = result_of(document);
+	struct figure figure = drawn("responses", &source, &(struct figure_choice){0});
+	(void)state;
+	// eight panels, those of the first mass
+	assert_non_null(strstr(figure.svg, "; means over the signals; left mass 1 kg<"));
+	assert_non_null(strstr(figure.svg, ">restitution 0.2<"));
+	assert_non_null(strstr(figure.svg, "Shown: 8 of 16 combinations"));
+	free(figure.svg);
+	source_free(&source);
+	free(document);
+}
+
 static void a_line_does_not_end_between_a_number_and_its_unit(void **state)
 {
 	static const struct {
@@ -594,6 +612,7 @@ CHECK_MAIN(cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
            cmocka_unit_test(a_short_logarithmic_axis_has_two_ticks_at_least),
            cmocka_unit_test(what_has_no_value_says_so), cmocka_unit_test(a_force_is_drawn_for_each_contact),
            cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
+           cmocka_unit_test(panels_of_a_sweep_say_what_all_of_them_share),
            cmocka_unit_test(a_line_does_not_end_between_a_number_and_its_unit),
            cmocka_unit_test(the_golden_figures_have_not_changed),
            cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),
