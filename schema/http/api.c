@@ -77,6 +77,14 @@ const struct api_operation api_operations[] = {
 	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
+/* Of the list, and of its page, whose script passes them on. */
+#define LISTED(operation) \
+	{operation, "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true}, \
+	{operation, "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true}, \
+	{operation, "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .digits = 16, .blank = true}, \
+	{operation, "name",            "query",  NULL, 0, 0, NULL, .text = "only studies with this text in their name; case matters", .blank = true}, \
+	{operation, "hash",            "query",  NULL, 0, 0, NULL, .text = "only studies with this study_hash: the same study, whatever its name and form", .digits = 64, .blank = true}
+
 const struct api_argument api_arguments[] = {
 	{NULL,      "id",              "path",   NULL, 0, 0, NULL, .text = "id of the study: 16 hexadecimal digits", .digits = 16},
 	{"records_put", "sha256",      "path",   NULL, 0, 0, NULL, .text = "SHA-256 of the body: 64 hexadecimal digits", .digits = 64},
@@ -84,11 +92,7 @@ const struct api_argument api_arguments[] = {
 	{"records_get", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"submit",  "validate_only",   "query",  " true false ", 0, 0, "false", .text = "true: checks the study and estimates its cost; nothing is stored"},
 	{"submit",  "Idempotency-Key", "header", NULL, 0, 0, NULL, .text = "1 to 200 characters of UTF-8; repeating a request with the same key and body returns the first study"},
-	{"list",    "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true},
-	{"list",    "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true},
-	{"list",    "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .digits = 16, .blank = true},
-	{"list",    "name",            "query",  NULL, 0, 0, NULL, .text = "only studies with this text in their name; case matters", .blank = true},
-	{"list",    "hash",            "query",  NULL, 0, 0, NULL, .text = "only studies with this study_hash: the same study, whatever its name and form", .digits = 64, .blank = true},
+	LISTED("list"),
 	{"status",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"status",  "Prefer",          "header", NULL, 0, 0, NULL, .text = "wait=N: with If-None-Match, waits for a change up to N seconds or the limit of the server"},
 	{"posted",  "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
@@ -115,8 +119,13 @@ const struct api_argument api_arguments[] = {
 	{"example", "name",            "path",   NULL, 0, 0, NULL, .text = "name of the example"},
 	{"example_list", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"example", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	LISTED("home"),
 	{"home", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+	{"new", "from", "query", NULL, 0, 0, NULL, .text = "id of a study whose document is the start", .digits = 16},
 	{"new", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
+#define X(name, values, lowest, highest, meaning) {"study", #name, "query", values, lowest, highest, NULL, .text = meaning},
+	FIGURE_ARGUMENTS(X)
+#undef X
 	{"study", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"style", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"script", "If-None-Match", "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},

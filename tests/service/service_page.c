@@ -18,8 +18,17 @@ enum { PAGE_BYTES = 40000, PAGE_NODES = 2000, PAGE_MS = 1000 };
 static const struct {
 	const char *path, *type;
 } FILES[] = {
-    {"/", "text/html"},        {"/new", "text/html"},           {"/studies/0123456789abcdef", "text/html"},
-    {"/page.css", "text/css"}, {"/page.js", "text/javascript"}, {"/icon.svg", "image/svg+xml"},
+    {"/", "text/html"},
+    {"/new", "text/html"},
+    {"/studies/0123456789abcdef", "text/html"},
+    {"/page.css", "text/css"},
+    {"/page.js", "text/javascript"},
+    {"/icon.svg", "image/svg+xml"},
+    // the addresses that the pages themselves make: a filter, the next page, a choice, "use as a start"
+    {"/?status=queued", "text/html"},
+    {"/?status=running&cursor=0123456789abcdef", "text/html"},
+    {"/studies/0123456789abcdef?cell=0&output=impulse&index=S1", "text/html"},
+    {"/new?from=0123456789abcdef", "text/html"},
 };
 
 static void every_page_has_its_type_its_policy_and_its_tag(void **state)
