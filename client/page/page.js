@@ -207,6 +207,8 @@ async function figure(row, choice, partial) {
 	return box;
 }
 
+let latest = 0; // drawing of all figures: what a slower, earlier one brings is not shown
+
 // The figures are drawn while the result, a promise, is still on its way.
 async function figures(coming, partial) {
 	const answer = await ask(`${base}/figures${partial ? "?partial=true" : ""}`);
@@ -215,7 +217,6 @@ async function figures(coming, partial) {
 		return;
 	}
 	const rows = (await answer.json()).figures, chosen = Object.fromEntries(new URLSearchParams(location.search));
-	let latest = 0;
 	const draw = async () => {
 		const number = ++latest;
 		$("figures-section").hidden = false;
