@@ -11,8 +11,9 @@ CPPFLAGS.release := -D_FORTIFY_SOURCE=2
 LDFLAGS.release  := -pie -Wl,-z,relro,-z,now
 MODE.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 MODE.tsan    := -O1 -g -fsanitize=thread
-# the march's loops over lanes are to be straight code; no index of an array on its stack comes from a study
-MARCH.release := -O3 -fno-tree-vectorize -fno-stack-protector
+# the march's loops over lanes are to be straight code, each function from a cache line on; no index of an array on its stack comes
+# from a study
+MARCH.release := -O3 -fno-tree-vectorize -fno-stack-protector -falign-functions=64
 # a floor is followed by short loops over the orders of a series
 FLOOR.release := -O3 -funroll-loops
 # passes over samples, in vectors
