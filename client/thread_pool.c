@@ -251,8 +251,10 @@ bool thread_pool_idle(struct thread_pool *pool)
 int worker_threads(void)
 {
 	cpu_set_t set;
-	int n = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-	return n < MESSAGE_THREADS_MAX ? n : MESSAGE_THREADS_MAX;
+	// of more processors than a set holds all count
+	const long n =
+	    sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : sysconf(_SC_NPROCESSORS_ONLN);
+	return n < MESSAGE_THREADS_MAX ? (int)n : MESSAGE_THREADS_MAX;
 }
 
 __attribute__((noreturn, format(printf, 1, 2))) static void fail(const char *format, ...)

@@ -184,7 +184,8 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 	if (plot_is_result(result) || (cJSON_IsObject(result) && row->sampled && source->samples))
 		status = figure_of(row, result, source, choice, figure);
 	else
-		snprintf(figure->detail, sizeof figure->detail, "this is no result of a study");
+		snprintf(figure->detail, sizeof figure->detail,
+		         "this is no result of a study: `pound run STUDY.json` prints one");
 	cJSON_Delete(result);
 	return status;
 }

@@ -424,7 +424,9 @@ static void put_study(struct report *report, const char *study, size_t n_study)
 {
 	put(report, "<h2>The study document</h2>\n");
 	if (!study) {
-		put_element(report, "p", "It was not given when this report was made.");
+		put_element(
+		    report, "p",
+		    "It was not given when this report was made; `pound report RESULT STUDY.json` shows it, too.");
 		return;
 	}
 	put(report, "<pre tabindex=\"0\">");
