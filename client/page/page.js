@@ -51,7 +51,7 @@ async function ask(path, options = {}) {
 		if (!reached) $("server").textContent = "the server answers again";
 		reached = true;
 		if (answer.status === 401) {
-			asking ??= dialog("This server asks for a token.", "go on", true).finally(() => { asking = null; });
+			asking ??= dialog(sessionStorage.getItem("token") ? "The server does not know this token." : "This server asks for a token.", "go on", true).finally(() => { asking = null; });
 			const token = await asking;
 			if (token === null) return answer;
 			sessionStorage.setItem("token", token);
@@ -261,8 +261,10 @@ function data(study) {
 	if (done) links.push(["results", `${id}-result.json`, "the result, JSON"], ["results?format=csv", `${id}.csv`, "the result, CSV"]);
 	if (sampled) links.push(["samples?format=csv", `${id}-samples.csv`, "samples, CSV"], ["samples?format=npy", `${id}-samples.npy`, "samples, NumPy"]);
 	$("downloads").replaceChildren(...links.map(([rest, name, label]) => element("li", {}, download(`${base}/${rest}`, name, label))));
-	$("use-shell").textContent = `curl -sS --fail-with-body ${location.origin}${base}/results -o result.json\nPOUND_URL=${location.origin} pound report ${id} >report.html`;
-	$("use-python").textContent = `import json, urllib.request\nurl = "${location.origin}${base}/results"\nresult = json.load(urllib.request.urlopen(url))\nprint(result["kind"], list(result))`;
+	// a server that asks for a token gets it from the variable that pound reads, too
+	const secret = sessionStorage.getItem("token");
+	$("use-shell").textContent = `curl -sS --fail-with-body ${secret ? '-H "Authorization: Bearer $POUND_TOKEN" ' : ""}${location.origin}${base}/results -o result.json\nPOUND_URL=${location.origin} pound report ${id} >report.html`;
+	$("use-python").textContent = `import json, ${secret ? "os, " : ""}urllib.request\nurl = "${location.origin}${base}/results"\n${secret ? 'url = urllib.request.Request(url, headers={"Authorization": "Bearer " + os.environ["POUND_TOKEN"]})\n' : ""}result = json.load(urllib.request.urlopen(url))\nprint(result["kind"], list(result))`;
 }
 
 let tenth = -1;

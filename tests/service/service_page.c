@@ -1,6 +1,9 @@
 /* The pages for browsers: what the server gives, word by word; and in Chromium, where there is one, by keys alone. */
 #include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -255,6 +258,51 @@ static void warnings_are_shown_while_typing_and_with_the_result(void **state)
 	browser_free(browser);
 }
 
+/* A server with tokens: a wrong one is named as such, the right one is kept for the tab, and what is to be copied has it by name. */
+static void a_token_is_asked_for_until_it_is_right(void **state)
+{
+	static const char token[] = "correct-horse-battery-staple-0123456789";
+	const struct service *served = *state; // for a folder of its own
+	char path[128], id[17];
+	if (!browser_there())
+		skip();
+	snprintf(path, sizeof path, "%s/tokens", served->directory);
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fprintf(file, "%s\n", token);
+	fclose(file);
+	chmod(path, 0600);
+	struct service *service = service_new();
+	// the study of one that has none yet
+	service_start(service, 1);
+	char *study = service_study(2, 2, 1);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	free(study);
+	service_stop(service);
+	setenv("POUNDD_TOKEN_FILE", path, 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_TOKEN_FILE");
+	struct browser *browser = opened(service, false, 1000);
+	snprintf(path, sizeof path, "/studies/%s", id);
+	go(browser, service, path);
+	browser_wait(browser, "document.getElementById('ask').open && "
+	                      "document.getElementById('ask-text').textContent.includes('asks for a token')");
+	browser_type(browser, "not this one");
+	browser_press(browser, "Enter");
+	browser_wait(browser, "document.getElementById('ask').open && "
+	                      "document.getElementById('ask-text').textContent.includes('does not know')");
+	browser_type(browser, token);
+	browser_press(browser, "Enter");
+	browser_wait(browser,
+	             "document.getElementById('use-shell').textContent.includes('Bearer $POUND_TOKEN') && "
+	             "document.getElementById('use-python').textContent.includes('POUND_TOKEN') && "
+	             "document.querySelectorAll('#figures svg').length > 0");
+	browser_free(browser);
+	service_stop(service);
+	service_free(service);
+}
+
 static void a_campaign_is_shown_in_a_second_and_2000_nodes(void **state)
 {
 	const struct service *service = *state;
@@ -347,5 +395,6 @@ CHECK_MAIN(SERVED(every_page_has_its_type_its_policy_and_its_tag),
            SERVED(a_study_is_shown_in_both_schemes_and_widths_without_a_fault),
            SERVED(a_report_does_not_scroll_sideways_however_narrow_or_large_its_text),
            SERVED(warnings_are_shown_while_typing_and_with_the_result),
+           SERVED(a_token_is_asked_for_until_it_is_right),
            SERVED(a_campaign_is_shown_in_a_second_and_2000_nodes),
            SERVED(a_study_is_made_followed_cancelled_and_deleted_by_keys_while_the_server_is_killed))
