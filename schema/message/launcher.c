@@ -113,13 +113,12 @@ const char *launcher_start(struct launcher *l, const struct launch *launch)
 	*l = (struct launcher){.listens = listen_on(launch->host ? ALL_ADDRESSES : LOOPBACK, &port)};
 	if (l->listens < 0)
 		return "no free port to listen on";
-	if (strlen(host) > sizeof entry / 2)
-		return "the name of this host for workers is too long";
 	if (getrandom(secret, sizeof secret, 0) != sizeof secret)
 		return "the system gave no random numbers";
 	for (size_t i = 0; i < sizeof secret; i++)
 		snprintf(l->token + 2 * i, 3, "%02x", secret[i]);
-	snprintf(entry, sizeof entry, "POUND_WORKER=%s:%d:%s", host, port, l->token);
+	if (snprintf(entry, sizeof entry, "POUND_WORKER=%s:%d:%s", host, port, l->token) >= (int)sizeof entry)
+		return "the name of --worker-host is too long";
 	char **environment = environment_with(entry);
 	pid_t pid = environment ? fork() : -1;
 	if (pid == 0)

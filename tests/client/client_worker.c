@@ -318,6 +318,12 @@ static void workers_connect_to_the_host_that_the_user_names(void **state)
 	assert_string_equal(service_timeless(outcome.out), world.reference);
 	assert_non_null(strstr(outcome.err, "worker group 1: connected, 1 thread\n"));
 	program_free(&outcome);
+	char host[600];
+	memset(host, 'a', sizeof host - 1);
+	host[sizeof host - 1] = '\0';
+	outcome = POUND("run", "--threads", "1", "--worker-host", host, "--launcher", command, world.study);
+	assert_non_null(strstr(outcome.err, "the name of --worker-host is too long"));
+	program_free(&outcome);
 	outcome = POUND("run", "--worker-host", "localhost", world.study);
 	program_expect(&outcome, 2);
 	program_free(&outcome);
