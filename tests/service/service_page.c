@@ -258,6 +258,43 @@ static void warnings_are_shown_while_typing_and_with_the_result(void **state)
 	browser_free(browser);
 }
 
+/* What the pages put into addresses leads where it should: the list by status, a study to start from. */
+static void the_list_is_filtered_and_a_study_is_a_start_for_another(void **state)
+{
+	const struct service *service = *state;
+	char *study = service_study(2, 2, 1), id[17];
+	struct browser *browser = opened(service, false, 1000);
+	service_submit(service, study, id);
+	assert_true(service_wait(service, id, "succeeded", 0));
+	go(browser, service, "/");
+	for (int k = 0; k < 2; k++) {
+		char choose[200], shown[200];
+		const char *status = k ? "succeeded" : "failed";
+		snprintf(choose, sizeof choose,
+		         "document.getElementById('status').value = '%s', "
+		         "document.getElementById('status').dispatchEvent(new Event('change'))",
+		         status);
+		snprintf(shown, sizeof shown,
+		         "location.search === '?status=%s' && document.getElementById('none')?.hidden === %s", status,
+		         k ? "true && document.querySelectorAll('#studies tbody tr').length === 1" : "false");
+		browser_wait(browser, "typeof document.getElementById('status')?.onchange === 'function'");
+		free(browser_text(browser, choose));
+		browser_wait(browser, shown);
+	}
+	free(browser_text(browser, "document.querySelector('#studies a').click()"));
+	browser_wait(
+	    browser,
+	    "location.pathname.startsWith('/studies/') && document.getElementById('again')?.href.length > 0");
+	browser_tab(browser, "again");
+	browser_press(browser, "Enter");
+	browser_wait(
+	    browser,
+	    "location.pathname === '/new' && document.getElementById('text')?.value.includes('sensitivity')");
+	expect_no_fault(browser);
+	browser_free(browser);
+	free(study);
+}
+
 /* A server with tokens: a wrong one is named as such, the right one is kept for the tab, and what is to be copied has it by name. */
 static void a_token_is_asked_for_until_it_is_right(void **state)
 {
@@ -395,6 +432,7 @@ CHECK_MAIN(SERVED(every_page_has_its_type_its_policy_and_its_tag),
            SERVED(a_study_is_shown_in_both_schemes_and_widths_without_a_fault),
            SERVED(a_report_does_not_scroll_sideways_however_narrow_or_large_its_text),
            SERVED(warnings_are_shown_while_typing_and_with_the_result),
+           SERVED(the_list_is_filtered_and_a_study_is_a_start_for_another),
            SERVED(a_token_is_asked_for_until_it_is_right),
            SERVED(a_campaign_is_shown_in_a_second_and_2000_nodes),
            SERVED(a_study_is_made_followed_cancelled_and_deleted_by_keys_while_the_server_is_killed))
