@@ -247,7 +247,7 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 	static const char other[] = "another-token-of-another-client-0123456789";
 	char path[128], tokens[2][128];
 	const char *study = NULL;
-	char *large = service_study(SERVICE_ROWS, 5, 1), *small = service_study(2, 1, 1), locations[2][64];
+	char *large = service_study(20 * SERVICE_ROWS, 5, 1), *small = service_study(2, 1, 1), locations[2][64];
 	(void)state;
 	struct service *service = service_new();
 	token_file(service, path);

@@ -127,7 +127,7 @@ static void a_full_queue_is_503_until_there_is_room(void **state)
 	(void)state;
 	struct service *service = service_with(settings, 1);
 	enum { OPEN = 4 }; // studies that take turns
-	char *study = service_study(SERVICE_ROWS, 5, 1), id[17], path[64];
+	char *study = service_study(20 * SERVICE_ROWS, 5, 1), id[17], path[64];
 	for (int i = 0; i < OPEN; i++) {
 		service_submit(service, study, id);
 		assert_true(service_wait(service, id, "running", 0));

@@ -227,7 +227,7 @@ static void more_seconds_than_there_are_are_the_most_there_are(void **state)
 static void queued_study(const struct service *service, char first[17], char second[17], char tag[64])
 {
 	enum { OPEN = 4 };
-	char *study = service_study(SERVICE_ROWS, 5, 1), *other = service_study(2, 1, 2);
+	char *study = service_study(20 * SERVICE_ROWS, 5, 1), *other = service_study(2, 1, 2);
 	for (int i = 0; i < OPEN; i++) {
 		service_submit(service, study, first);
 		assert_true(service_wait(service, first, "running", 0));
