@@ -5,6 +5,7 @@
 
 #include <argp.h>
 #include <assert.h>
+#include <errno.h>
 #include <netdb.h>
 #include <pthread.h>
 #include <sched.h>
@@ -268,17 +269,21 @@ __attribute__((noreturn, format(printf, 1, 2))) static void fail(const char *for
 	exit(1);
 }
 
-/* A connection to one of the addresses of a host, -1: none. */
-static int connect_to(const char *host, const char *port)
+/* A connection to one of the addresses of a host, -1: none, and why. */
+static int connect_to(const char *host, const char *port, const char **why)
 {
 	const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM};
 	struct addrinfo *found = NULL;
 	int s = -1;
-	if (getaddrinfo(host, port, &wanted, &found) != 0)
+	const int unknown = getaddrinfo(host, port, &wanted, &found);
+	if (unknown != 0) {
+		*why = gai_strerror(unknown);
 		return -1;
+	}
 	for (struct addrinfo *at = found; at && s < 0; at = at->ai_next) {
 		s = socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, at->ai_protocol);
 		if (s >= 0 && connect(s, at->ai_addr, at->ai_addrlen) != 0) {
+			*why = strerror(errno);
 			close(s);
 			s = -1;
 		}
@@ -302,11 +307,12 @@ int worker_connect(int n_threads)
 		*port++ = '\0';
 	if (!port || strlen(token) != MESSAGE_TOKEN_SIZE)
 		fail("POUND_WORKER must be HOST:PORT:TOKEN");
-	int s = connect_to(host, port);
+	const char *why = "no socket";
+	int s = connect_to(host, port, &why);
 	if (s < 0)
-		fail("cannot connect to %s, port %s; on another machine than the program that started this one, that "
-		     "program needs --worker-host",
-		     host, port);
+		fail("cannot connect to %s, port %s: %s; on another machine than the program that started this one, "
+		     "that program needs --worker-host with a name or address by which this machine reaches it",
+		     host, port, why);
 	message_prepare(s);
 	const struct message ready = {
 	    .type = MESSAGE_READY, .block = n_threads, .n = (uint32_t)strlen(POUND_VERSION)};

@@ -555,7 +555,7 @@ bool store_expire(struct store *store, int days, int days_blocks)
 			released(c, STORE_NONE);
 		else if (released(c, run(c, bound(c, rules[i].find, "i", rules[i].days * DAY), &id)) == STORE_OK &&
 		         relieved(store, rules[i].end, id) == STORE_OK) {
-			log_line("study %016llx ended %lld days ago: %s", (unsigned long long)id,
+			log_line("study %016llx ended more than %lld d ago: %s", (unsigned long long)id,
 			         (long long)rules[i].days, rules[i].what);
 			return true;
 		}

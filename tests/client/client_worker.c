@@ -472,7 +472,7 @@ static void a_worker_that_no_launcher_started_says_so(void **state)
 	setenv("POUND_WORKER", "127.0.0.1:1:" TOKEN, 1);
 	outcome = program_run((const char *const[]){"pound-worker", NULL}, NULL);
 	program_expect(&outcome, 1);
-	assert_non_null(strstr(outcome.err, "cannot connect to 127.0.0.1, port 1; "));
+	assert_non_null(strstr(outcome.err, "cannot connect to 127.0.0.1, port 1: Connection refused; "));
 	assert_non_null(strstr(outcome.err, "--worker-host"));
 	program_free(&outcome);
 	setenv("POUND_WORKER", "nonsense", 1);
