@@ -8,6 +8,7 @@
  * Two linear bodies go from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact solver. */
 #include "engine/run/pair_peaks.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 
@@ -198,6 +199,7 @@ static void interval_look(struct pound_pair_peaks *peaks, const struct pound_ins
 	double error = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &peaks->bodies[i];
+		assert(from->stiffness[i] <= 1.000001 * b->backbone.stiffness); // else the bound is of no use
 		const double acceleration = b->damping * from->v[i] + from->stiffness[i] * from->u[i] +
 		                            (from->spring_offset[i] + b->drive * from->ground);
 		error += peaks->error[i][0] * fabs(acceleration) +
