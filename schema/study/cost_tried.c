@@ -86,19 +86,17 @@ void cost_try(struct cost *cost, const struct pound_study *asked, const atomic_b
 	const double all = cost_of_runs(&study);
 	struct part part;
 	struct trial trial;
-	double ratio;
 	part_init(&part, &study);
 	for (;; part.items = (int)fmin(MORE * (double)part.items, part.most)) {
 		part_take(&part);
 		trial = trial_run(&part.study, false, TRIAL_MOST, unwanted);
-		ratio = trial.cpu_s / cost_of_runs(&part.study);
 		if (!trial.complete || trial.cpu_s > TRIAL_ENOUGH || part.items >= part.most)
 			break;
 	}
-	if (!trial.complete && ratio > UNCOMMON) {
+	const double counted = cost_of_runs(&part.study);
+	if (!trial.complete && trial.cpu_s > UNCOMMON * counted)
 		trial = trial_run(&part.study, false, UNCOMMON_MOST, unwanted);
-		ratio = trial.cpu_s / cost_of_runs(&part.study);
-	}
+	const double ratio = trial.cpu_s / counted;
 	if (trial.complete) {
 		cost->cpu_s += (OTHERS * ratio - 1) * all;
 		cost->cpu_s_high = TRIED_HIGH * cost->cpu_s;
