@@ -422,8 +422,8 @@ static void go_on(struct request *request)
 	server->aside--;
 }
 
-/* Whether a thread of its own would have its turn at once. */
-static bool turn_free(struct server *server)
+/* Whether a thread of its own would run at once. */
+static bool slot_free(struct server *server)
 {
 	int n = 0;
 	return sem_getvalue(&server->turns, &n) == 0 && n > 0;
@@ -522,7 +522,7 @@ enum MHD_Result http_answer(void *of, struct MHD_Connection *connection, const c
 		request->replied = true;
 	}
 	struct reply reply = request->replied ? request->reply : routes_answer(request);
-	if (reply.later && turn_free(server) && put_aside(request))
+	if (reply.later && slot_free(server) && put_aside(request))
 		return MHD_YES;
 	if (reply.later) {
 		request->crowded = true;
