@@ -56,8 +56,8 @@ SERVER := $(call objs,server,server/main.c)
 # one of these asks servers: the second says that it cannot (make client CURL=0)
 WIRE   := client/wire.c client/offline.c
 # programs of their own: they run blocks for other processes, the second as ranks of MPI (make MPI=1)
-WORKER := client/worker.c client/thread_pool.c
-RANKS  := client/worker_ranks.c client/thread_pool.c
+WORKER := client/worker.c client/thread_pool.c client/worker_connection.c
+RANKS  := client/worker_ranks.c client/thread_pool.c client/worker_connection.c
 MPICC  ?= mpicc
 CLIENT := $(call objs,client,$(WIRE) $(WORKER) $(RANKS))
 # a program each; the files of tests/support serve them all

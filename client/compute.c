@@ -196,7 +196,7 @@ static bool remote_start(struct pool *pool)
 	                                          .lives = remote_lives,
 	                                          .log = remote_log};
 	pool->study = (struct coordinator_study){1, of->study, of->run, of->document, of->length};
-	if (!of->launch->command)
+	if (!of->launch->command && !of->launch->at)
 		return true;
 	if (!message_movable(of->study)) {
 		remote_log(

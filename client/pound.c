@@ -1,6 +1,7 @@
 /* pound.c - the command line: the table of subcommands, their options, and the usage printed from both. */
 #include "engine/pound.h"
 #include "client/command.h"
+#include "schema/message/coordinator.h"
 #include "schema/result/result_json.h"
 
 #include <argp.h>
@@ -16,7 +17,6 @@ static const char URL_DEFAULT[] = "http://127.0.0.1:8437";
 
 enum {
 	THREADS_MAX = 1024,
-	LAUNCHERS_MAX = 256,
 	LIMIT_MAX = 100,
 	CHANNEL_MAX = 1000,
 	FORMATS_MAX = 4,
@@ -57,10 +57,10 @@ static_assert(FIGURE_KEY_cell == 1 && FIGURE_KEY_signal == 9, "the keys of a mot
 
 // clang-format off
 static const struct command COMMANDS[] = {
-	{"run", "STUDY.json", "tfToLBQk", false, {"json", "table", "csv"}, run_study,
+	{"run", "STUDY.json", "tfToLBQEFk", false, {"json", "table", "csv"}, run_study,
 	 "compute a study here, without a server",
 	 "Prints the result on standard output: the same bytes as from a server, except `timing'.  "
-	 "Ctrl-C stops the study.  With --launcher, worker processes on this and other machines compute too: client/machines.md."},
+	 "Ctrl-C stops the study.  With --launcher or --worker-listen, worker processes on this and other machines compute too: client/machines.md."},
 	{"design", "STUDY.json", "", false, {0}, model_design,
 	 "print the rows of a study's design, to evaluate with a model of your own",
 	 "CSV: a header of the inputs' names and, for each row i of the design, the samples A_i, B_i and A_i with "
@@ -128,6 +128,8 @@ static const struct argp_option OPTIONS[] = {
 	{"launcher",   'L', "COMMAND", 0, "command that starts worker processes, such as 'srun pound-worker'", 0},
 	{"launchers",  'B', "N",   0, "run this command N times; each is a worker group that starts and fails independently (default: 1)", 0},
 	{"worker-host", 'Q', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},
+	{"worker-listen", 'E', "ADDRESS:PORT", 0, "let workers connect there that are started elsewhere, by `pound-worker --connect'", 0},
+	{"worker-token-file", 'F', "FILE", 0, "token of those workers: 64 hexadecimal digits", 0},
 	{"checkpoint", 'k', "FILE", 0, "keep finished blocks in FILE, and continue with those in it", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},
 	{"status",  's', "STATE",  0, "only queued, running, succeeded, failed or cancelled studies", 0},
@@ -238,7 +240,13 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		options->launch.host = value;
 		return 0;
 	case 'B':
-		options->launch.n = whole_number(state, "--launchers", value, LAUNCHERS_MAX);
+		options->launch.n = whole_number(state, "--launchers", value, COORDINATOR_GROUPS_MAX);
+		return 0;
+	case 'E':
+		options->launch.at = value;
+		return 0;
+	case 'F':
+		options->launch.token_file = value;
 		return 0;
 	case 'k':
 		options->checkpoint = value;
@@ -344,10 +352,8 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 			return 0;
 		if (strchr(parsing->command->takes, 'm') && !options->evaluate.model)
 			argp_error(state, "--model is missing");
-		if (!options->launch.command && (options->launch.host || options->launch.n))
-			argp_error(state, "--launchers and --worker-host need --launcher");
-		if (options->launch.n == 0)
-			options->launch.n = 1;
+		if (launch_fault(&options->launch))
+			argp_error(state, "%s", launch_fault(&options->launch));
 		if (strchr(parsing->command->takes, 'L'))
 			check_ranks(state);
 		if (options->evaluate.replicates && !options->evaluate.seed_member)

@@ -79,6 +79,13 @@ static bool writable(const char *path)
 static enum outcome run_and_print(const struct pound_study *study, const char *document, size_t length,
                                   const struct options *options)
 {
+	struct launch launch = options->launch;
+	char said[512];
+	const bool listens = launch_listen(&launch, said, sizeof said);
+	if (*said)
+		command_complain("%s", said);
+	if (!listens)
+		return OUTCOME_FAILED;
 	double wall = seconds(CLOCK_MONOTONIC);
 	struct pound_run *run = pound_run_create_by(study, options->threads, &interrupted);
 	if (run)
@@ -88,7 +95,7 @@ static enum outcome run_and_print(const struct pound_study *study, const char *d
 	                          .document = document,
 	                          .length = length,
 	                          .n_threads = options->threads,
-	                          .launch = &options->launch,
+	                          .launch = &launch,
 	                          .checkpoint = options->checkpoint,
 	                          .interrupted = &interrupted};
 	enum pound_status status = run ? compute_run(&compute) : POUND_NOMEM;

@@ -3,21 +3,12 @@
  * dropped is stopped, its orders are answered as such, and the last who is at it frees it. */
 #include "client/thread_pool.h"
 
-#include <argp.h>
 #include <assert.h>
-#include <errno.h>
-#include <netdb.h>
 #include <pthread.h>
-#include <sched.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/queue.h>
-#include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "schema/json/problems.h"
 #include "schema/study/study_json.h"
@@ -200,6 +191,7 @@ static bool obey(struct thread_pool *pool, const struct message *m, struct work_
 	case MESSAGE_READY:
 	case MESSAGE_DESIGN:
 	case MESSAGE_VALUES:
+	case MESSAGE_REFUSE: // by worker_take
 		break;
 	}
 	return false;
@@ -247,108 +239,4 @@ bool thread_pool_idle(struct thread_pool *pool)
 	const bool idle = TAILQ_EMPTY(&pool->studies);
 	pthread_mutex_unlock(&pool->lock);
 	return idle;
-}
-
-int worker_threads(void)
-{
-	cpu_set_t set;
-	// of more processors than a set holds all count
-	const long n =
-	    sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : sysconf(_SC_NPROCESSORS_ONLN);
-	return n < MESSAGE_THREADS_MAX ? (int)n : MESSAGE_THREADS_MAX;
-}
-
-__attribute__((noreturn, format(printf, 1, 2))) static void fail(const char *format, ...)
-{
-	va_list values;
-	va_start(values, format);
-	fputs("pound-worker: ", stderr);
-	vfprintf(stderr, format, values);
-	fputs("\n", stderr);
-	va_end(values);
-	exit(1);
-}
-
-/* A connection to one of the addresses of a host, -1: none, and why. */
-static int connect_to(const char *host, const char *port, const char **why)
-{
-	const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM};
-	struct addrinfo *found = NULL;
-	int s = -1;
-	const int unknown = getaddrinfo(host, port, &wanted, &found);
-	if (unknown != 0) {
-		*why = gai_strerror(unknown);
-		return -1;
-	}
-	for (struct addrinfo *at = found; at && s < 0; at = at->ai_next) {
-		s = socket(at->ai_family, at->ai_socktype | SOCK_CLOEXEC, at->ai_protocol);
-		if (s >= 0 && connect(s, at->ai_addr, at->ai_addrlen) != 0) {
-			*why = strerror(errno);
-			close(s);
-			s = -1;
-		}
-	}
-	freeaddrinfo(found);
-	return s;
-}
-
-int worker_connect(int n_threads)
-{
-	const char *address = getenv("POUND_WORKER");
-	if (!address)
-		fail("it is started by a launcher, which says in POUND_WORKER where to connect; "
-		     "see `pound run --help', --launcher");
-	// from the end, as an address of IPv6 has colons
-	char *host = strdup(address), *token = host ? strrchr(host, ':') : NULL;
-	if (token)
-		*token++ = '\0';
-	char *port = token ? strrchr(host, ':') : NULL;
-	if (port)
-		*port++ = '\0';
-	if (!port || strlen(token) != MESSAGE_TOKEN_SIZE)
-		fail("POUND_WORKER must be HOST:PORT:TOKEN");
-	const char *why = "no socket";
-	int s = connect_to(host, port, &why);
-	if (s < 0)
-		fail("cannot connect to %s, port %s: %s; on another machine than the program that started this one, "
-		     "that program needs --worker-host with a name or address by which this machine reaches it",
-		     host, port, why);
-	message_prepare(s);
-	const struct message ready = {
-	    .type = MESSAGE_READY, .block = n_threads, .n = (uint32_t)strlen(POUND_VERSION)};
-	if (send(s, token, MESSAGE_TOKEN_SIZE, MSG_NOSIGNAL) != MESSAGE_TOKEN_SIZE ||
-	    !message_send(s, &ready, POUND_VERSION))
-		fail("cannot send to %s", host);
-	free(host);
-	return s;
-}
-
-const char *argp_program_version = "pound-worker " POUND_VERSION;
-
-static error_t take(int key, char *value, struct argp_state *state)
-{
-	int *n_threads = state->input;
-	char *end;
-	if (key != 't')
-		return ARGP_ERR_UNKNOWN;
-	long n = strtol(value, &end, 10);
-	if (end == value || *end || n < 1 || n > MESSAGE_THREADS_MAX)
-		argp_error(state, "--threads must be a whole number from 1 to %d, got '%s'", MESSAGE_THREADS_MAX,
-		           value);
-	*n_threads = (int)n;
-	return 0;
-}
-
-int worker_options(int argc, char **argv)
-{
-	static const struct argp_option options[] = {
-	    {"threads", 't', "N", 0, "compute with N threads (default: cores this process may use)", 0}, {0}};
-	static const struct argp argp = {
-	    .options = options,
-	    .parser = take,
-	    .doc = "Runs blocks of studies for a `pound run' or poundd that started it by --launcher.\v"
-	           "Where to connect is in POUND_WORKER, which the launcher sets: HOST:PORT:TOKEN."};
-	int n_threads = worker_threads();
-	argp_parse(&argp, argc, argv, 0, NULL, &n_threads);
-	return n_threads;
 }

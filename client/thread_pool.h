@@ -11,7 +11,6 @@ struct thread_pool;
 /* Takes an answer, DESIGN or VALUES, whose body lives until it returns; in any thread, one at a time. */
 typedef void worker_answer(void *to, const struct message *message, const void *body);
 
-int worker_threads(void); /* as many as this process may use cores */
 struct thread_pool *thread_pool_start(int n_threads, worker_answer *answer,
                                       void *to); /* NULL: no memory or threads */
 /* Does what a message of the coordinator says; takes the body, which is on the heap.  false: it makes no sense. */
@@ -20,10 +19,5 @@ bool thread_pool_take(struct thread_pool *pool, const struct message *message, c
 size_t thread_pool_values_most(struct thread_pool *pool, uint64_t study);
 void thread_pool_stop(struct thread_pool *pool); /* outstanding blocks return POUND_STOPPED */
 bool thread_pool_idle(struct thread_pool *pool); /* after that: all of them were answered */
-
-/* Connects as POUND_WORKER says and greets; ends the program when that is not possible. */
-int worker_connect(int n_threads);
-/* Threads as `--threads N` says, or worker_threads(); ends the program on wrong usage. */
-int worker_options(int argc, char **argv);
 
 #endif

@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "client/thread_pool.h"
+#include "client/worker_connection.h"
 #include "schema/message/launcher.h"
 
 static void send_answer(void *to, const struct message *message, const void *body)
@@ -17,8 +18,8 @@ static void send_answer(void *to, const struct message *message, const void *bod
 
 int main(int argc, char **argv)
 {
-	const int n_threads = worker_options(argc, argv);
-	struct message message;
+	const struct worker_options options = worker_options(argc, argv);
+	struct message message = {0};
 	char *body;
 	gsl_set_error_handler_off();
 	if (launcher_ranks() > 1) {
@@ -29,11 +30,11 @@ int main(int argc, char **argv)
 		        launcher_ranks());
 		return EXIT_FAILURE;
 	}
-	int connection = worker_connect(n_threads);
-	struct thread_pool *pool = thread_pool_start(n_threads, send_answer, &connection);
-	while (pool && message_take(connection, MESSAGE_OF_COORDINATOR, &message, &body))
-		if (!thread_pool_take(pool, &message, body))
-			_exit(EXIT_FAILURE);
+	int connection = worker_connect(&options, options.n_threads, true);
+	struct thread_pool *pool = thread_pool_start(options.n_threads, send_answer, &connection);
+	bool sense = pool;
+	while (sense && worker_take(connection, &message, &body))
+		sense = thread_pool_take(pool, &message, body);
 	// threads are at work
-	_exit(pool ? EXIT_SUCCESS : EXIT_FAILURE);
+	_exit(sense && message.type != MESSAGE_REFUSE ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -20,6 +20,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "client/thread_pool.h"
+#include "client/worker_connection.h"
 
 enum {
 	TAG_END = 0,      /* the last message of rank 0 */
@@ -230,7 +231,7 @@ static void *connection_read(void *of)
 	struct ranks *r = of;
 	struct message head;
 	char *body;
-	while (message_take(r->connection, MESSAGE_OF_COORDINATOR, &head, &body)) {
+	while (worker_take(r->connection, &head, &body)) {
 		mail_put(&r->mailbox, packet_of(CONNECTION, &head, body));
 		free(body);
 	}
@@ -403,7 +404,8 @@ static void work(struct ranks *r)
 
 int main(int argc, char **argv)
 {
-	int n_threads = worker_options(argc, argv), provided;
+	const struct worker_options options = worker_options(argc, argv);
+	int n_threads = options.n_threads, provided;
 	struct ranks r = {.mailbox = {.lock = PTHREAD_MUTEX_INITIALIZER}, .sending = PTHREAD_MUTEX_INITIALIZER};
 	STAILQ_INIT(&r.mailbox.packets);
 	gsl_set_error_handler_off();
@@ -421,7 +423,7 @@ int main(int argc, char **argv)
 	if (all > MESSAGE_THREADS_MAX)
 		fail("the ranks have more than 4096 threads: start several groups by --launchers");
 	if (r.rank == 0)
-		r.connection = worker_connect(all);
+		r.connection = worker_connect(&options, all, false);
 	r.pool = must(thread_pool_start(n_threads, r.rank == 0 ? answer_own : answer_queue, &r));
 	(r.rank == 0 ? coordinate : work)(&r);
 	MPI_Finalize();

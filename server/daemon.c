@@ -9,8 +9,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "schema/message/listen.h"
 #include "server/http_calls.h"
-#include "server/listen.h"
 #include "server/log.h"
 
 enum {
@@ -141,7 +141,7 @@ bool daemon_start(struct server *server)
 		return false;
 	if (!connections_start(&server->connections))
 		return false;
-	int fd = listen_open(&address);
+	int fd = listen_open(&address, LISTEN_ONE_FAMILY);
 	server->daemon = fd >= 0 ? serving(server, &address, fd, n) : NULL;
 	if (server->daemon)
 		return true;

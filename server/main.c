@@ -117,11 +117,11 @@ int main(int argc, char **argv)
 	hold_streams();
 	options_read(&options, argc, argv);
 	umask(077);
-	if (!options.launch.command && (options.launch.host || options.launch.n)) {
-		log_line("--launchers and --worker-host need --launcher, the command that starts workers");
+	const char *fault = launch_fault(&options.launch);
+	if (fault) {
+		log_line("%s", fault);
 		return EXIT_FAILURE;
 	}
-	options.launch.n = options.launch.n ? options.launch.n : 1;
 	if (options.backup)
 		return backup_make(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options.restore)
@@ -146,6 +146,12 @@ int main(int argc, char **argv)
 	                        .answers.lock = PTHREAD_MUTEX_INITIALIZER,
 	                        .partials.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (options.token_file && !(server.tokens = tokens_open(options.token_file)))
+		return EXIT_FAILURE;
+	char said[512];
+	const bool listens = launch_listen(&options.launch, said, sizeof said);
+	if (*said)
+		log_line("%s", said);
+	if (!listens)
 		return EXIT_FAILURE;
 	server.document = api_document(&server.document_length);
 	if (!server.document)

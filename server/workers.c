@@ -618,9 +618,9 @@ struct work *work_start(struct store *store, int n_workers, double time_max, dou
 	pthread_cond_init(&work->waits, NULL);
 	work->watched = pthread_create(&work->watch, NULL, watch, work) == 0;
 	work->commits = pthread_create(&work->committer, NULL, commit, work) == 0;
-	work->coordinator = launch->command ? groups_start(work, launch) : NULL;
+	work->coordinator = launch->command || launch->at ? groups_start(work, launch) : NULL;
 	int started = 0;
-	const bool groups = work->coordinator || !launch->command;
+	const bool groups = work->coordinator || !(launch->command || launch->at);
 	while (groups && work->watched && work->commits && started < n_workers &&
 	       pthread_create(&work->workers[started], NULL, worker, work) == 0)
 		started++;

@@ -5,10 +5,14 @@
  *    +------------------------------+--------------------- idle for 60 s, or lost
  *
  * No block is taken before the group has connected, so a launcher that waits in a queue delays nothing.  While it serves,
- * a group has two blocks a thread: one that runs, one on its way. */
+ * a group has two blocks a thread: one that runs, one on its way.
+ *
+ * Groups that others start have no launcher.  One thread waits for a connection, starts the next that waits, and serves what
+ * it has let in until that goes. */
 #include "schema/message/coordinator.h"
 
 #include <assert.h>
+#include <errno.h>
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
@@ -20,6 +24,8 @@
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "schema/message/listen.h"
 
 enum {
 	AHEAD = 2,        /* blocks a thread that a group has */
@@ -60,7 +66,8 @@ struct group {
 	int n_refused;
 	double *values; /* (n_values) of one block */
 	size_t n_values;
-	bool worked; /* a block was run since the launch */
+	bool worked;                 /* a block was run since the launch */
+	char peer[LISTEN_PEER_SIZE]; /* address that it connected from */
 };
 
 struct coordinator {
@@ -69,9 +76,17 @@ struct coordinator {
 	atomic_bool stopping;
 	atomic_int n_connected;
 	atomic_long n_blocks;
-	int n;
-	struct group groups[]; /* (n) */
+	pthread_mutex_t lock;  /* of the start of threads */
+	int n_waiting;         /* groups that wait for others to connect */
+	int n_launched, n_max; /* groups that have a launcher, groups at most */
+	atomic_int n;          /* groups whose threads have started */
+	struct group groups[]; /* (n_max) */
 };
+
+static bool has_launcher(const struct group *g)
+{
+	return g->number <= g->of->n_launched;
+}
 
 static double now_s(void)
 {
@@ -299,6 +314,19 @@ static bool answer(struct group *g)
 	return !fault;
 }
 
+/* Says here, and to the worker, why it is not wanted. */
+__attribute__((format(printf, 2, 3))) static void turn_away(struct group *g, const char *format, ...)
+{
+	char why[MESSAGE_TEXT_MAX];
+	va_list values;
+	va_start(values, format);
+	vsnprintf(why, sizeof why, format, values);
+	va_end(values);
+	const struct message m = {.type = MESSAGE_REFUSE, .n = (uint32_t)strlen(why)};
+	message_send(g->socket, &m, why);
+	say(g, "refused: %s", why);
+}
+
 /* The first message; false: another version, or not that. */
 static bool greet(struct group *g)
 {
@@ -307,11 +335,10 @@ static bool greet(struct group *g)
 	bool ready = message_take(g->socket, MESSAGE_OF_WORKER, &m, &version) && m.type == MESSAGE_READY;
 	bool same = ready && m.n == strlen(POUND_VERSION) && memcmp(version, POUND_VERSION, m.n) == 0;
 	if (!ready)
-		say(g, "refused: its first message is not the greeting of a pound-worker");
+		turn_away(g, "its first message is not the greeting of a pound-worker");
 	else if (!same)
-		say(g,
-		    "refused: pound-worker has version %.*s, this program " POUND_VERSION "; both must be the same",
-		    (int)m.n, version);
+		turn_away(g, "pound-worker has version %.*s, this program " POUND_VERSION "; both must be the same",
+		          (int)m.n, version);
 	free(version);
 	if (!same)
 		return false;
@@ -321,13 +348,23 @@ static bool greet(struct group *g)
 	return g->out;
 }
 
+static void set_socket(struct group *g, int socket)
+{
+	pthread_mutex_lock(&g->lock);
+	if (g->socket >= 0)
+		close(g->socket);
+	g->socket = socket;
+	pthread_mutex_unlock(&g->lock);
+}
+
 /* Serves a group that has connected, until it ends or is idle for long. */
 static void serve(struct group *g)
 {
 	double busy = now_s(), looked = 0;
 	bool ok = !g->of->stopping && greet(g);
 	if (ok) {
-		say(g, "connected, %d thread%s", g->n_threads, g->n_threads == 1 ? "" : "s");
+		say(g, "connected, %d thread%s%s%s", g->n_threads, g->n_threads == 1 ? "" : "s",
+		    has_launcher(g) ? "" : ", from ", has_launcher(g) ? "" : g->peer);
 		atomic_fetch_add(&g->of->n_connected, 1);
 	}
 	const bool connected = ok;
@@ -341,7 +378,7 @@ static void serve(struct group *g)
 			break;
 		if (g->n_out > 0)
 			busy = now_s();
-		else if (now_s() - busy > IDLE_MAX) {
+		else if (has_launcher(g) && now_s() - busy > IDLE_MAX) {
 			say(g, "ended, because there were no blocks for %d s", IDLE_MAX);
 			break;
 		}
@@ -354,14 +391,21 @@ static void serve(struct group *g)
 		give_back(g, &g->out[i]);
 	if (connected)
 		atomic_fetch_sub(&g->of->n_connected, 1);
-	pthread_mutex_lock(&g->lock);
-	close(g->socket);
-	g->socket = -1;
-	pthread_mutex_unlock(&g->lock);
+	set_socket(g, -1);
 	free(g->out);
 	g->out = NULL;
 	g->n_out = g->n_threads = g->n_refused = 0;
 	memset(g->known, 0, sizeof g->known);
+}
+
+/* A connection of what the launcher has started; -1: there is none. */
+static int launched_accept(struct group *g)
+{
+	const int connection = listen_accept(g->launcher.listens, g->peer);
+	if (connection < 0 || listen_lets_in(connection, g->launcher.token))
+		return connection;
+	close(connection);
+	return -1;
 }
 
 /* Starts the launcher, waits for the connection, serves it. */
@@ -377,15 +421,13 @@ static void launch(struct group *g)
 	for (double busy = now_s(); !ended && connection < 0 && !g->of->stopping && now_s() - busy < IDLE_MAX;) {
 		ended = launcher_ended(&g->launcher);
 		if (pause_for(g, g->launcher.listens, LOOK_MS))
-			connection = launcher_accept(&g->launcher);
+			connection = launched_accept(g);
 		if (source->wanted(source->of))
 			busy = now_s();
 	}
 	launcher_close(&g->launcher);
 	const bool connected = connection >= 0;
-	pthread_mutex_lock(&g->lock);
-	g->socket = connection;
-	pthread_mutex_unlock(&g->lock);
+	set_socket(g, connection);
 	if (connected)
 		serve(g);
 	else if (ended && !fault)
@@ -393,7 +435,7 @@ static void launch(struct group *g)
 	launcher_stop(&g->launcher, connected);
 }
 
-static void *group_run(void *of)
+static void *launched_run(void *of)
 {
 	struct group *g = of;
 	int pause = 1;
@@ -411,29 +453,83 @@ static void *group_run(void *of)
 	return NULL;
 }
 
+static bool group_start(struct coordinator *c);
+
+/* Waits for workers that others start, one after the other. */
+static void *waiting_run(void *of)
+{
+	struct group *g = of;
+	struct coordinator *c = g->of;
+	while (!c->stopping) {
+		pause_for(g, c->launch.socket, -1);
+		const int connection = c->stopping ? -1 : listen_accept(c->launch.socket, g->peer);
+		if (connection < 0) {
+			// another group was faster, or there are no descriptors
+			if (!c->stopping && errno != EAGAIN)
+				pause_for(g, -1, LOOK_MS);
+			continue;
+		}
+		set_socket(g, connection);
+		pthread_mutex_lock(&c->lock);
+		const bool next = --c->n_waiting > 0 || c->n == c->n_max || group_start(c);
+		pthread_mutex_unlock(&c->lock);
+		if (!next)
+			say(g, "no thread to wait for further workers");
+		if (c->stopping)
+			set_socket(g, -1);
+		else if (listen_lets_in(connection, c->launch.token))
+			serve(g);
+		else {
+			turn_away(g, "the token from %s is not the one of --worker-token-file", g->peer);
+			set_socket(g, -1);
+		}
+		pthread_mutex_lock(&c->lock);
+		c->n_waiting++;
+		pthread_mutex_unlock(&c->lock);
+	}
+	return NULL;
+}
+
+/* Starts the thread of the next group, under the lock; false: no descriptor, no thread, or all end. */
+static bool group_start(struct coordinator *c)
+{
+	struct group *g = &c->groups[c->n];
+	*g = (struct group){.of = c, .number = c->n + 1, .socket = -1};
+	if (c->stopping || (g->wakes = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) < 0)
+		return c->stopping;
+	pthread_mutex_init(&g->lock, NULL);
+	if (pthread_create(&g->thread, NULL, has_launcher(g) ? launched_run : waiting_run, g) != 0) {
+		close(g->wakes);
+		return false;
+	}
+	c->n_waiting += !has_launcher(g);
+	c->n++;
+	return true;
+}
+
 /* Starts the threads of the groups; launchers start when blocks are wanted.
  *
- * Test     client_worker: every_example_gives_the_same_bytes_with_any_number_of_groups
+ * Test     client_worker: every_example_gives_the_same_bytes_with_any_number_of_groups,
+ *          client_listen: workers_that_others_start_join_and_leave_at_any_time
  */
 struct coordinator *coordinator_start(const struct launch *launch, const struct coordinator_source *source)
 {
-	const int n = launch->n;
-	struct coordinator *c = calloc(1, sizeof *c + (size_t)n * sizeof c->groups[0]);
+	const int n_launched = launch->command ? (launch->n ? launch->n : 1) : 0,
+	          n_max = n_launched + (launch->at ? COORDINATOR_GROUPS_MAX : 0);
+	struct coordinator *c = calloc(1, sizeof *c + (size_t)n_max * sizeof c->groups[0]);
 	if (!c)
 		return NULL;
 	c->launch = *launch;
 	c->source = *source;
-	for (; c->n < n; c->n++) {
-		struct group *g = &c->groups[c->n];
-		g->of = c;
-		g->number = c->n + 1;
-		g->socket = -1;
-		pthread_mutex_init(&g->lock, NULL);
-		g->wakes = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-		if (g->wakes < 0 || pthread_create(&g->thread, NULL, group_run, g) != 0)
-			break;
-	}
-	if (c->n == n)
+	c->n_launched = n_launched;
+	c->n_max = n_max;
+	pthread_mutex_init(&c->lock, NULL);
+	pthread_mutex_lock(&c->lock);
+	bool started = true;
+	for (int i = 0; i < n_launched + (launch->at != NULL) && started; i++)
+		started = group_start(c);
+	pthread_mutex_unlock(&c->lock);
+	if (started)
 		return c;
 	coordinator_stop(c);
 	return NULL;
@@ -461,7 +557,9 @@ void coordinator_stop(struct coordinator *c)
 {
 	if (!c)
 		return;
-	c->stopping = true;
+	pthread_mutex_lock(&c->lock);
+	c->stopping = true; // no more threads start
+	pthread_mutex_unlock(&c->lock);
 	coordinator_wake(c);
 	for (int i = 0; i < c->n; i++) {
 		struct group *g = &c->groups[i];
@@ -476,5 +574,8 @@ void coordinator_stop(struct coordinator *c)
 		pthread_mutex_destroy(&c->groups[i].lock);
 		close(c->groups[i].wakes);
 	}
+	if (c->launch.at)
+		close(c->launch.socket);
+	pthread_mutex_destroy(&c->lock);
 	free(c);
 }

@@ -1,7 +1,8 @@
 /* coordinator.h - worker groups in other processes: their launchers, their connections, the blocks assigned to them.
  *
  * One thread per group: starts the launcher when there are blocks to run, waits for its connection, assigns blocks and
- * receives their values.  When the connection ends, it gives back the blocks that were not run. */
+ * receives their values.  When the connection ends, it gives back the blocks that were not run.  Further groups are those that
+ * others start: they come and go at any time. */
 #ifndef COORDINATOR_H
 #define COORDINATOR_H
 
@@ -13,7 +14,7 @@
 #include "schema/message/launcher.h"
 #include "schema/message/message.h"
 
-enum { COORDINATOR_GROUPS_MAX = 256 };
+enum { COORDINATOR_GROUPS_MAX = 256 }; /* that launchers start; as many that others start */
 
 /* A study whose blocks are assigned; it outlives the blocks that are taken. */
 struct coordinator_study {
@@ -46,7 +47,7 @@ struct coordinator_source {
 
 struct coordinator;
 
-/* NULL: no memory or no threads.  What the launch points to outlives the coordinator. */
+/* NULL: no memory or no threads.  What the launch points to outlives the coordinator, which closes its socket. */
 struct coordinator *coordinator_start(const struct launch *launch, const struct coordinator_source *source);
 void coordinator_wake(
     struct coordinator *coordinator); /* there are blocks, or studies have ended; signal-safe */

@@ -4,29 +4,58 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <netinet/in.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
-#include <sys/socket.h>
-#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <nettle/memops.h>
+#include "schema/message/listen.h"
 
 enum {
-	TOKEN_WAIT = 2,   /* [s] for a connection to say its token */
 	END_WAIT = 3,     /* [s] from the end of the connection to SIGTERM, and from there to SIGKILL */
 	PAUSE_US = 10000, /* between two looks whether it has ended */
 };
 
-enum reach { LOOPBACK, ALL_ADDRESSES };
-
 extern char **environ;
+
+/* Checks the options of worker groups.
+ *
+ * Test     client_pound: wrong_usage_ends_with_2_and_prints_no_data
+ */
+const char *launch_fault(const struct launch *launch)
+{
+	union listen_address address;
+	if (!launch->command && (launch->host || launch->n))
+		return "--launchers and --worker-host need --launcher, the command that starts workers";
+	if (!launch->at != !launch->token_file)
+		return "--worker-listen and --worker-token-file need each other";
+	if (launch->at && !listen_address_and_port(launch->at, &address))
+		return "--worker-listen must be an IP address and a port, such as 127.0.0.1:8438 or [::]:8438";
+	return NULL;
+}
+
+bool launch_listen(struct launch *launch, char *text, size_t size)
+{
+	union listen_address address;
+	text[0] = '\0';
+	if (!launch->at)
+		return true;
+	const char *fault = listen_token(launch->token_file, launch->token);
+	listen_address_and_port(launch->at, &address);
+	launch->socket = fault ? -1 : listen_open(&address, LISTEN_BOTH_FAMILIES);
+	if (fault)
+		snprintf(text, size, "token file %s: %s", launch->token_file, fault);
+	else if (launch->socket < 0)
+		snprintf(text, size, "cannot listen on %s for workers: %s", launch->at, strerror(errno));
+	else
+		snprintf(text, size, "workers may connect to %.*s:%d", (int)(strrchr(launch->at, ':') - launch->at),
+		         launch->at, listen_port(launch->socket));
+	return launch->socket >= 0;
+}
 
 int launcher_ranks(void)
 {
@@ -37,37 +66,6 @@ int launcher_ranks(void)
 		most = n && atoi(n) > most ? atoi(n) : most;
 	}
 	return most;
-}
-
-static int bound(int family, const struct sockaddr *at, socklen_t size)
-{
-	const int off = 0;
-	int s = socket(family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	if (s >= 0 && family == AF_INET6)
-		setsockopt(s, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof off);
-	if (s >= 0 && (bind(s, at, size) != 0 || listen(s, 16) != 0)) {
-		close(s);
-		s = -1;
-	}
-	return s;
-}
-
-/* Listens on a free port, of loopback or of every address of this machine; -1: not possible. */
-static int listen_on(enum reach reach, int *port)
-{
-	const struct sockaddr_in6 all = {.sin6_family = AF_INET6, .sin6_addr = IN6ADDR_ANY_INIT};
-	const struct sockaddr_in at = {.sin_family = AF_INET,
-	                               .sin_addr.s_addr =
-	                                   htonl(reach == ALL_ADDRESSES ? INADDR_ANY : INADDR_LOOPBACK)};
-	struct sockaddr_in6 got;
-	socklen_t size = sizeof got;
-	int s = reach == ALL_ADDRESSES ? bound(AF_INET6, (const struct sockaddr *)&all, sizeof all) : -1;
-	if (s < 0) // loopback, or a machine without IPv6
-		s = bound(AF_INET, (const struct sockaddr *)&at, sizeof at);
-	if (s < 0 || getsockname(s, (struct sockaddr *)&got, &size) != 0)
-		return -1;
-	*port = ntohs(got.sin6_port); // at the same offset in both families
-	return s;
 }
 
 /* The environment with one more entry, or one in the place of another. */
@@ -104,20 +102,30 @@ static void become(const char *command, char **environment)
 	_exit(127);
 }
 
+/* Listens on a free port. */
+static int listens_at(const char *text)
+{
+	union listen_address address;
+	listen_address(text, 0, &address);
+	return listen_open(&address, LISTEN_BOTH_FAMILIES);
+}
+
 const char *launcher_start(struct launcher *l, const struct launch *launch)
 {
 	uint8_t secret[MESSAGE_TOKEN_SIZE / 2];
 	char entry[512];
-	int port = 0;
 	const char *host = launch->host ? launch->host : "127.0.0.1";
-	*l = (struct launcher){.listens = listen_on(launch->host ? ALL_ADDRESSES : LOOPBACK, &port)};
+	*l = (struct launcher){.listens = listens_at(launch->host ? "::" : "127.0.0.1")};
+	if (l->listens < 0 && launch->host) // a machine without IPv6
+		l->listens = listens_at("0.0.0.0");
 	if (l->listens < 0)
 		return "no free port to listen on";
 	if (getrandom(secret, sizeof secret, 0) != sizeof secret)
 		return "the system gave no random numbers";
 	for (size_t i = 0; i < sizeof secret; i++)
 		snprintf(l->token + 2 * i, 3, "%02x", secret[i]);
-	if (snprintf(entry, sizeof entry, "POUND_WORKER=%s:%d:%s", host, port, l->token) >= (int)sizeof entry)
+	if (snprintf(entry, sizeof entry, "POUND_WORKER=%s:%d:%s", host, listen_port(l->listens), l->token) >=
+	    (int)sizeof entry)
 		return "the name of --worker-host is too long";
 	char **environment = environment_with(entry);
 	pid_t pid = environment ? fork() : -1;
@@ -140,23 +148,6 @@ bool launcher_ended(struct launcher *l)
 	if (ended)
 		l->status = about.si_code == CLD_EXITED ? about.si_status : 128 + about.si_status;
 	return ended;
-}
-
-int launcher_accept(const struct launcher *l)
-{
-	char token[MESSAGE_TOKEN_SIZE];
-	const struct timeval limit = {.tv_sec = TOKEN_WAIT}, silence = {.tv_sec = MESSAGE_SILENCE};
-	int s = accept4(l->listens, NULL, NULL, SOCK_CLOEXEC);
-	if (s < 0)
-		return -1;
-	setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-	if (!message_receive(s, token, sizeof token) || !memeql_sec(token, l->token, sizeof token)) {
-		close(s);
-		return -1;
-	}
-	setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &silence, sizeof silence);
-	message_prepare(s);
-	return s;
 }
 
 void launcher_close(struct launcher *l)

@@ -1,4 +1,4 @@
-/* launcher.h - a command that starts workers, and the connection that they open. */
+/* launcher.h - what worker groups come from: a command that starts them, or a port to which others start them. */
 #ifndef LAUNCHER_H
 #define LAUNCHER_H
 
@@ -7,13 +7,22 @@
 
 #include "schema/message/message.h"
 
-/* What starts worker groups. */
+/* Where worker groups come from. */
 struct launch {
-	const char *command; /* run by sh -c, POUND_WORKER in its environment; NULL: no workers */
+	const char *command; /* run by sh -c, POUND_WORKER in its environment; NULL: none */
 	const char
-	    *host; /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
-	int n;     /* groups: the command runs once for each */
+	    *host;      /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
+	int n;          /* groups: the command runs once for each; 0: once */
+	const char *at; /* ADDRESS:PORT to which workers that others start connect; NULL: there is none */
+	const char *token_file;             /* of the token that those send */
+	int socket;                         /* that listens there, ... */
+	char token[MESSAGE_TOKEN_SIZE + 1]; /* ... and its token, from launch_listen on */
 };
+
+/* NULL, or which options do not go together. */
+const char *launch_fault(const struct launch *launch);
+/* Listens for workers that others start, if it is to; false: it cannot.  The text, when there is one, says so or says where. */
+bool launch_listen(struct launch *launch, char *text, size_t size);
 
 struct launcher {
 	pid_t pid;   /* of its process group, 0: none */
@@ -27,8 +36,6 @@ int launcher_ranks(
 /* NULL, or what failed */
 const char *launcher_start(struct launcher *launcher, const struct launch *launch);
 bool launcher_ended(struct launcher *launcher);
-/* A connection that starts with the token; -1: there is none, or it starts with something else and is closed. */
-int launcher_accept(const struct launcher *launcher);
 void launcher_close(struct launcher *launcher); /* takes no connection any more */
 /* Ends all of its processes on this machine.  Workers whose connection was closed get END_WAIT to exit first, a command
  * that never connected gets SIGTERM at once. */

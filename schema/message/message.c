@@ -27,6 +27,7 @@ static const struct row {
 	[MESSAGE_BLOCK]  = {MESSAGE_OF_COORDINATOR, 0, INT32_MAX, 0, 0, 1, true, false, false},
 	[MESSAGE_VALUES] = {MESSAGE_OF_WORKER,      0, INT32_MAX, 1, MESSAGE_VALUES_MAX, sizeof(double), true, true, true},
 	[MESSAGE_DROP]   = {MESSAGE_OF_COORDINATOR, 0, 0, 0, 0, 1, true, false, false},
+	[MESSAGE_REFUSE] = {MESSAGE_OF_COORDINATOR, 0, 0, 1, MESSAGE_TEXT_MAX, 1, false, false, false},
 };
 // clang-format on
 
@@ -50,7 +51,7 @@ static bool is_status(int32_t status)
  */
 const char *message_fault(const struct message *m, enum message_sender sender)
 {
-	if (m->type < MESSAGE_READY || m->type > MESSAGE_DROP)
+	if (m->type < MESSAGE_READY || m->type > MESSAGE_REFUSE)
 		return "its type is unknown";
 	const struct row *row = &kinds[m->type];
 	if (row->sender != sender)

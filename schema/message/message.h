@@ -9,6 +9,7 @@
  *           <-   BLOCK
  *   VALUES  ->                status, values
  *           <-   DROP         the study has ended
+ *           <-   REFUSE       in the place of all this: why the worker is not wanted
  *
  * Any thread. */
 #ifndef MESSAGE_H
@@ -27,6 +28,7 @@ enum message_type {
 	MESSAGE_BLOCK,     /* run it */
 	MESSAGE_VALUES,    /* body: doubles, when the status is POUND_OK */
 	MESSAGE_DROP,      /* outstanding blocks return POUND_STOPPED */
+	MESSAGE_REFUSE,    /* body: a sentence; the connection ends */
 };
 
 enum message_sender { MESSAGE_OF_WORKER, MESSAGE_OF_COORDINATOR };
@@ -34,6 +36,7 @@ enum message_sender { MESSAGE_OF_WORKER, MESSAGE_OF_COORDINATOR };
 enum {
 	MESSAGE_THREADS_MAX = 4096,
 	MESSAGE_VERSION_MAX = 64,       /* [bytes] */
+	MESSAGE_TEXT_MAX = 256,         /* [bytes] */
 	MESSAGE_DOCUMENT_MAX = 1 << 28, /* [bytes] */
 	MESSAGE_VALUES_MAX = 1 << 27,   /* doubles */
 	MESSAGE_DIGEST_SIZE = 32,       /* [bytes] */

@@ -64,6 +64,8 @@ static void wrong_usage_ends_with_2_and_prints_no_data(void **state)
 	    {"pound", "run", "--format=xml", "a.json"},
 	    {"pound", "run", "--launchers=2", "a.json"},
 	    {"pound", "run", "--worker-host=localhost", "a.json"},
+	    {"pound", "run", "--worker-listen=127.0.0.1:0", "a.json"},
+	    {"pound", "run", "--worker-token-file=token", "a.json"},
 	    {"pound", "run", "--launcher=true", "--launchers=257", "a.json"},
 	    {"pound", "results", "--format=npy", "1"},
 	    {"pound", "list", "everything"},

@@ -1,4 +1,4 @@
-/* `poundd --launcher': the same bytes whatever runs blocks, and whatever happens to workers and server.
+/* `poundd --launcher' and `--worker-listen': the same bytes whatever runs blocks, and whatever happens to workers and server.
  *
  * A block is a row of the table `block`, whose key is its study and number: a block that is lost has no row, and the runs of a
  * block that is doubled count twice in the study's `runs_done`. */
@@ -337,17 +337,92 @@ static void launchers_that_fail_or_wait_delay_nothing(void **state)
 	}
 }
 
-static void options_of_workers_without_a_launcher_are_an_error(void **state)
+static void options_of_workers_that_do_not_fit_are_an_error(void **state)
 {
-	static const char *const options[] = {"--launchers=2", "--worker-host=node1"};
+	static const char *const options[][2] = {
+	    {"--launchers=2", "--launchers and --worker-host need --launcher"},
+	    {"--worker-host=node1", "--launchers and --worker-host need --launcher"},
+	    {"--worker-listen=127.0.0.1:0", "--worker-listen and --worker-token-file need each other"},
+	    {"--worker-token-file=token", "--worker-listen and --worker-token-file need each other"}};
 	(void)state;
-	for (int i = 0; i < 2; i++) {
+	for (size_t i = 0; i < sizeof options / sizeof options[0]; i++) {
 		struct program_outcome outcome =
-		    program_run((const char *const[]){"poundd", options[i], "--port=0", NULL}, NULL);
+		    program_run((const char *const[]){"poundd", options[i][0], "--port=0", NULL}, NULL);
 		program_expect(&outcome, 1);
-		assert_non_null(strstr(outcome.err, "--launchers and --worker-host need --launcher"));
+		assert_non_null(strstr(outcome.err, options[i][1]));
 		program_free(&outcome);
 	}
+}
+
+/* Starts a server that listens for workers there. */
+static void start_listening(struct service *service, const char *at, const char *token)
+{
+	setenv("POUNDD_WORKER_LISTEN", at, 1);
+	setenv("POUNDD_WORKER_TOKEN_FILE", token, 1);
+	service_start(service, 1);
+	unsetenv("POUNDD_WORKER_LISTEN");
+	unsetenv("POUNDD_WORKER_TOKEN_FILE");
+}
+
+static void workers_that_others_start_outlive_servers_and_may_leave_at_any_time(void **state)
+{
+	enum { WORKERS = 2 };
+	const int n = check_count(10, 500);
+	char token[] = "/tmp/pound-test-token-XXXXXX", at[32];
+	pid_t workers[WORKERS] = {0};
+	int left = 0, kills = 0, studies = 0;
+	double blocks = 0;
+	(void)state;
+	const int file = mkstemp(token);
+	for (int i = 0; i < 64; i++)
+		assert_int_equal(write(file, "c", 1), 1);
+	close(file);
+	snprintf(at, sizeof at, "127.0.0.1:%d", groups_port());
+	const char *const worker[] = {"pound-worker", "--threads", "1", "--connect", at,
+	                              "--token-file", token,       NULL};
+	char *study = service_study(LONG_ROWS, SIGNALS, SEED);
+	struct service_bytes reference = service_uninterrupted(study, 1);
+	srand(3);
+	while (kills < n) {
+		struct service *service = service_new();
+		char id[17];
+		start_listening(service, at, token);
+		service_submit(service, study, id);
+		for (bool running = true; running && kills < n; kills++) {
+			const int i = rand() % WORKERS;
+			left += workers[i] != 0;
+			if (workers[i] && kill(workers[i], rand() % 2 ? SIGKILL : SIGTERM) == 0)
+				program_end(workers[i]);
+			workers[i] = program_start(worker, "/dev/null", "/dev/null");
+			wait_groups(service, 1); // one of before comes again, or this one
+			usleep((useconds_t)(rand() % 300000));
+			blocks += metric(service, "pound_worker_blocks_total");
+			service_kill(service);
+			running = service_number(service, "SELECT count(*) FROM study WHERE status = 'succeeded'") == 0;
+			start_listening(service, at, token);
+		}
+		assert_true(service_wait(service, id, "succeeded", 0));
+		struct service_bytes bytes = service_bytes(service, id);
+		service_bytes_compare(&bytes, &reference);
+		assert_int_equal(service_number(service, "SELECT sum(runs) FROM block"), LONG_ROWS * 5 * SIGNALS);
+		assert_int_equal(service_number(service, "SELECT runs_done FROM study"), LONG_ROWS * 5 * SIGNALS);
+		blocks += metric(service, "pound_worker_blocks_total");
+		studies++;
+		service_stop(service);
+		service_free(service);
+	}
+	for (int i = 0; i < WORKERS; i++)
+		if (workers[i] && kill(workers[i], SIGTERM) == 0)
+			assert_int_equal(program_end(workers[i]), 128 + SIGTERM);
+	check_report("servers killed beside workers that others start: %d, workers ended meanwhile %d, blocks "
+	             "that workers "
+	             "ran %d; studies finished %d; blocks lost 0, doubled 0, results that differ 0",
+	             kills, left, (int)blocks, studies);
+	assert_true(blocks > 0 && left > 0);
+	free(reference.result);
+	free(reference.samples);
+	free(study);
+	unlink(token);
 }
 
 /* CPU time of a server's process so far [s]. */
@@ -408,7 +483,8 @@ int main(int argc, char **argv)
 	    cmocka_unit_test(a_study_does_not_wait_for_a_worker_that_hangs),
 	    cmocka_unit_test(a_worker_of_another_version_is_refused),
 	    cmocka_unit_test(launchers_that_fail_or_wait_delay_nothing),
-	    cmocka_unit_test(options_of_workers_without_a_launcher_are_an_error)};
+	    cmocka_unit_test(options_of_workers_that_do_not_fit_are_an_error),
+	    cmocka_unit_test(workers_that_others_start_outlive_servers_and_may_leave_at_any_time)};
 	(void)argc;
 	setup(NULL);
 	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));

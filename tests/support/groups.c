@@ -1,6 +1,8 @@
 #include "tests/support/groups.h"
 
+#include <arpa/inet.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -69,6 +71,17 @@ double groups_gone(const char *file, int limit_ms)
 			usleep(1000);
 		}
 	return groups_now() - start;
+}
+
+int groups_port(void)
+{
+	struct sockaddr_in at = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+	socklen_t size = sizeof at;
+	const int s = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_true(s >= 0 && bind(s, (const struct sockaddr *)&at, size) == 0);
+	assert_int_equal(getsockname(s, (struct sockaddr *)&at, &size), 0);
+	close(s);
+	return ntohs(at.sin_port);
 }
 
 int groups_blocks(const char *err)

@@ -16,6 +16,7 @@ void groups_wait(const char *file, int n, pid_t pids[GROUPS_PIDS_MAX]);
 bool groups_is_gone(pid_t pid);
 /* Waits until none of them is there, which fails the test after limit_ms; how long that took [s]. */
 double groups_gone(const char *file, int limit_ms);
+int groups_port(void); /* a port of loopback that nobody listens on */
 /* Blocks that workers ran, as `pound run` reports. */
 int groups_blocks(const char *err);
 /* Records of a checkpoint: how many blocks have one, and how many have more. */

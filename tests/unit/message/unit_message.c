@@ -21,13 +21,14 @@ static const struct message sound[] = {
     {.type = MESSAGE_VALUES, .study = 7, .block = 3, .n = 5, .cpu_s = 0.25},
     {.type = MESSAGE_VALUES, .study = 7, .block = 3, .status = POUND_STOPPED, .cpu_s = 0.25},
     {.type = MESSAGE_DROP, .study = 7},
+    {.type = MESSAGE_REFUSE, .n = 20},
 };
 enum { SOUND = sizeof sound / sizeof sound[0] };
 
 static enum message_sender sender_of(const struct message *m)
 {
-	const bool coordinator = m->type == MESSAGE_STUDY || m->type == MESSAGE_BLOCK || m->type == MESSAGE_DROP;
-	return coordinator ? MESSAGE_OF_COORDINATOR : MESSAGE_OF_WORKER;
+	const bool worker = m->type == MESSAGE_READY || m->type == MESSAGE_DESIGN || m->type == MESSAGE_VALUES;
+	return !worker ? MESSAGE_OF_COORDINATOR : MESSAGE_OF_WORKER;
 }
 
 /* Fails unless the fault of a head is about a field. */
@@ -49,7 +50,7 @@ static void every_field_of_a_head_is_checked(void **state)
 		assert_non_null(message_fault(&m, !sender_of(&m)));
 		for (uint32_t type = 0; type < 9; type++) {
 			m = sound[i];
-			m.type = type ? 6 + type : 0;
+			m.type = type ? MESSAGE_REFUSE + type : 0;
 			assert_non_null(message_fault(&m, MESSAGE_OF_WORKER));
 			assert_non_null(message_fault(&m, MESSAGE_OF_COORDINATOR));
 		}
