@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -130,6 +131,8 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 	if (pid < 0)
 		give_up("fork");
 	if (pid == 0) {
+		// a test that fails leaves nothing behind
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
 		int in_file = open("/dev/null", O_RDONLY | O_CLOEXEC);
 		int out_file = open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
 		int err_file = open(err, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
