@@ -13,7 +13,8 @@
  * 6. simulations of one scene, of laws of one branch, make their maps once, and their constants stay in lanes from batch to
  *    batch;
  * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl);
- * 8. one that is observed goes through the same steps, and stops at every event and, in going contact, at every sample.
+ * 8. one that is observed goes through the same steps, and stops at every event and, in going contact, at every sample; its observer
+ *    hears of every sample, or of those that may hold a largest u_1 - u_2.
  * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
 #include "engine/exact/task.h"
 
@@ -110,27 +111,81 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 	return full;
 }
 
+/* What the observers of lanes have seen at most, a row for each side.
+ *
+ * Returns  value  lanes whose observers are to hear of every sample
+ */
+LANE_INLINE unsigned observers_most(const struct batch *b, unsigned lanes, vd most[2])
+{
+	double known[2][W] = {0};
+	unsigned every = 0;
+	while (lanes) {
+		int l = lane_next(&lanes);
+		const double *of = b->sim[l]->task->observer->most;
+		for (int k = 0; of && k < 2; k++)
+			known[k][l] = of[k];
+		every |= of ? 0 : 1u << l;
+	}
+	most[0] = lanes_of(known[0]), most[1] = lanes_of(known[1]);
+	return every;
+}
+
+/* Carries a lane out to a sample of a stretch. */
+LANE_INLINE void stretch_carry(struct simulation *sim, const struct stretch *s, int r, int l)
+{
+	for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
+		sim->x.u[i] = ((const double *)&s->at[i][r].u)[l];
+		sim->x.v[i] = ((const double *)&s->at[i][r].v)[l];
+	}
+	sim->unobserved = sim->task->time_step;
+}
+
+/* Reports that n samples of a lane were passed, up to one of a stretch. */
+LANE_INLINE void stretch_pass(struct simulation *sim, const struct stretch *s, int64_t sample, int r, int l,
+                              int n)
+{
+	stretch_carry(sim, s, r, l);
+	double *known = sim->task->observer->most;
+	for (int k = 0; k < 2; k++) {
+		const double now = ((const double *)&s->most[r][k])[l];
+		known[k] = now > known[k] ? now : known[k];
+	}
+	simulation_pass(sim, sample, n);
+}
+
 /* Reports to the observers of lanes the samples of free motion in a stretch.
  *
- * Given    moved  how many
+ * Given    g, maps, scope  of the stretch
  */
-LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead, const struct stretch *s,
-                                 vd moved)
+LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead, struct stretch *s,
+                                 const struct lanes *g, const struct free_map maps[2],
+                                 const struct scope *scope)
 {
-	double samples[W], at[W];
-	lanes_store(samples, moved);
+	double samples[W];
+	unsigned exceeds[ROW], any = 0;
+	lanes_store(samples, s->moved);
+	const unsigned every = observers_most(b, ahead->observed, s->most[0]);
+	for (int r = 0; r < ROW; r++) {
+		exceeds[r] = every | stretch_exceeds(s, g, maps, r, scope);
+		any |= exceeds[r];
+	}
 	for (unsigned lanes = ahead->observed; lanes;) {
-		int l = lane_next(&lanes);
+		const int l = lane_next(&lanes);
 		struct simulation *sim = b->sim[l];
-		for (int r = 0; r < (int)samples[l]; r++) {
-			for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
-				lanes_store(at, s->at[i][r + 1].u);
-				sim->x.u[i] = at[l];
-				lanes_store(at, s->at[i][r + 1].v);
-				sim->x.v[i] = at[l];
+		const int64_t before = sim->next + ahead->gone - 1; // the sample at which the stretch begins
+		const int n = (int)samples[l];
+		int passed = any >> l & 1 ? 0 : n;
+		for (int r = passed; r <= n; r++) {
+			const bool ends = r == n, looked = !ends && exceeds[r] >> l & 1;
+			if (passed > 0 && (looked || ends)) {
+				stretch_pass(sim, s, before + r, r, l, passed);
+				passed = 0;
 			}
-			sim->unobserved = sim->task->time_step;
-			simulation_observe(sim, sim->next + ahead->gone + r);
+			if (looked) {
+				stretch_carry(sim, s, r + 1, l);
+				simulation_observe(sim, before + r + 1);
+			} else
+				passed++;
 		}
 	}
 }
@@ -164,8 +219,10 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 		moved = vselect(vmask(on), moved + one, moved);
 		stretch_keep(g, &s, r + 1, vmask(on), scope);
 	}
-	if (__builtin_expect(ahead->observed, 0))
-		stretch_observe(b, ahead, &s, moved);
+	if (__builtin_expect(ahead->observed, 0)) {
+		s.moved = moved;
+		stretch_observe(b, ahead, &s, g, maps, scope);
+	}
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - moved;
 	ahead->gone += ROW;

@@ -13,34 +13,51 @@ LANE_INLINE bool observed(const struct simulation *sim)
 	return __builtin_expect(sim->traits & TRAIT_OBSERVED, 0);
 }
 
-/* A simulation is at an instant.
+/* The instant at which a simulation is.
  *
  * Given    sample  that it is at; < 0: at an event, or where it ended early
  */
-LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
+LANE_INLINE void simulation_instant(struct simulation *sim, int64_t sample, struct pound_instant_of_task *now)
 {
 	const struct state_rows *x = &sim->x;
-	const struct pound_task_observer *observer = sim->task->observer;
 	const double left = x->remainder + x->substeps * x->substep, step = sim->task->time_step;
-	struct pound_instant_of_task now = {.elapsed = sim->unobserved,
-	                                    .sampled = sample >= 0,
-	                                    .touching = sim->touching,
-	                                    .overlap = x->p,
-	                                    .overlap_rate = x->q,
-	                                    .ground = x->ground,
-	                                    .slope = x->slope};
-	now.time = (double)(now.sampled ? sample : sim->next) * step - (now.sampled ? 0 : left);
+	// member by member: who reads it soon waits for wider stores
+	now->elapsed = sim->unobserved;
+	now->sampled = sample >= 0;
+	now->touching = sim->touching;
+	now->overlap = x->p;
+	now->overlap_rate = x->q;
+	now->ground = x->ground;
+	now->slope = x->slope;
+	now->time = (double)(now->sampled ? sample : sim->next) * step - (now->sampled ? 0 : left);
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
-		now.u[i] = x->u[i];
-		now.v[i] = x->v[i];
-		now.stiffness[i] = x->body[i].stiffness;
-		now.spring_offset[i] = x->body[i].offset;
+		now->u[i] = x->u[i];
+		now->v[i] = x->v[i];
+		now->stiffness[i] = x->body[i].stiffness;
+		now->spring_offset[i] = x->body[i].offset;
 	}
-	if (now.sampled) {
+	if (now->sampled) {
 		const double *a = &sim->ground[sample];
-		now.ground = a[0];
-		now.slope = sample < sim->last ? (a[1] - a[0]) * sim->per_step : 0;
+		now->ground = a[0];
+		now->slope = sample < sim->last ? (a[1] - a[0]) * sim->per_step : 0;
 	}
 	sim->unobserved = 0;
+}
+
+/* Reports an instant. */
+LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
+{
+	const struct pound_task_observer *observer = sim->task->observer;
+	struct pound_instant_of_task now;
+	simulation_instant(sim, sample, &now);
 	observer->observe(observer->into, &now);
+}
+
+/* Reports that n samples were passed, up to one. */
+LANE_SHARED void simulation_pass(struct simulation *sim, int64_t sample, int n)
+{
+	const struct pound_task_observer *observer = sim->task->observer;
+	struct pound_instant_of_task now;
+	simulation_instant(sim, sample, &now);
+	observer->pass(observer->into, &now, n);
 }

@@ -42,6 +42,11 @@ struct pound_instant_of_task {
 struct pound_task_observer {
 	void (*observe)(void *into, const struct pound_instant_of_task *instant);
 	void *into;
+	// or NULL: it hears of every sample.  Where nothing touches it need not hear of those inside of which neither is larger than at a sample:
+	double *
+	    most; /* u_1 - u_2 and u_2 - u_1 at most so far, raised to those at the samples that are passed (2) [m] */
+	void (*pass)(void *into, const struct pound_instant_of_task *instant,
+	             int n); /* n of them, up to an instant */
 };
 
 struct pound_task {

@@ -273,7 +273,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
 		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
 	}
-	const struct follower follower = {.observer = {pound_floor_observe, &floor->motion},
+	const struct follower follower = {.observer = {.observe = pound_floor_observe, .into = &floor->motion},
 	                                  .taker = {bank_take, &drive}};
 	enum pound_status status = floor_follow(floor, ask, &follower, &result);
 	for (int d = 0; d < ask->n_drives; d++)
@@ -550,7 +550,7 @@ enum pound_status pound_floor_history(struct pound_floor *floor, const struct po
 	                              .into = into,
 	                              .spacing = rows_spacing(floor->damping),
 	                              .of_chain = of_chain};
-	const struct follower follower = {.observer = {chronicle_observe, &chronicle},
+	const struct follower follower = {.observer = {.observe = chronicle_observe, .into = &chronicle},
 	                                  .taker = {chronicle_take, &chronicle},
 	                                  .beside = of_chain ? &chronicle.beside : NULL};
 	struct pound_task_result result = {0};

@@ -5,7 +5,8 @@
  * 2. In the end the notes that are still above are searched: u_1 - u_2 as a power series in time, or several where one does
  *    not reach, is halved until what it may exceed the largest value by is rounding.
  *
- * Two linear bodies go from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact solver. */
+ * Two linear bodies go from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact solver, which
+ * passes the samples that cannot count (task.h). */
 #include "engine/run/pair_peaks.h"
 
 #include <assert.h>
@@ -223,9 +224,20 @@ static void observe(void *into, const struct pound_instant_of_task *instant)
 		notes_search(peaks);
 }
 
+/* Samples in which nothing can be larger lie behind. */
+static void pass(void *into, const struct pound_instant_of_task *instant, int n)
+{
+	struct pound_pair_peaks *peaks = into;
+	peaks->from = *instant;
+	peaks->samples_left -= n;
+	if (peaks->samples_left <= 0)
+		notes_search(peaks);
+}
+
 static void start(struct pound_pair_peaks *peaks, const struct pound_task *task)
 {
-	*peaks = (struct pound_pair_peaks){.observer = {observe, peaks}, .samples_left = task->n_samples};
+	*peaks = (struct pound_pair_peaks){.observer = {observe, peaks, peaks->peak, pass},
+	                                   .samples_left = task->n_samples};
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &task->bodies[i];
 		peaks->bodies[i] = *b;

@@ -1,7 +1,7 @@
 /* Valid studies drawn at random.
  *
- * Kinds: response and sensitivity 3 of 8 each, floor_spectrum and convergence 1 of 8 each; a quarter of the responses of two
- * oscillators are of kind separation instead.  Drawn with equal chances in the
+ * Kinds: response and sensitivity 3 of 8 each, floor_spectrum and convergence 1 of 8 each; a quarter of the responses
+ * are of kind separation instead.  Drawn with equal chances in the
  * logarithm: frequencies 0.3 to 20 Hz, damping 0.01 to 0.2, mass 0.01 to 100, stiffness ratio 1 to 10^6, gap 10^-4 to 0.1 m (half: 0),
  * duration 1 to 40 s or 2 to 40 cycles of 0.5 to 10 Hz, sample step 0.002 to 0.02 s, signals 1 to 500 (sensitivity: 20, floor
  * spectrum: 50, convergence: 10), rows 16 to 32,000, frequencies of spectra 2 to 1,000, pulses (half: 0) 1 to 10^6, steps of solvers
@@ -217,7 +217,7 @@ static void draw(struct text *text)
 	text->n = 0;
 	const bool row = kind < 7 && below(3) == 0;
 	if (kind < 3) {
-		say(text, "{\"kind\": \"%s\", ", !row && below(4) == 0 ? "separation" : "response");
+		say(text, "{\"kind\": \"%s\", ", below(4) == 0 ? "separation" : "response");
 		if (row)
 			say_row(text, 100);
 		else

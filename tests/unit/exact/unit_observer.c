@@ -30,7 +30,7 @@ static struct story story, again;
 
 static struct pound_task_result observe(struct pound_task task, int lanes, struct story *into)
 {
-	const struct pound_task_observer observer = {story_add, into};
+	const struct pound_task_observer observer = {.observe = story_add, .into = into};
 	struct pound_task_result result;
 	into->n = 0;
 	task.observer = &observer;
@@ -242,7 +242,7 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 	assert_true(pound_exact_lanes(0, tasks, without, TASKS, scratch, NULL));
 	for (int k = 0; k < OBSERVED; k++) {
 		stories[k].n = 0;
-		observers[k] = (struct pound_task_observer){story_add, &stories[k]};
+		observers[k] = (struct pound_task_observer){.observe = story_add, .into = &stories[k]};
 		tasks[9 * k].observer = &observers[k];
 	}
 	assert_true(pound_exact_lanes(0, tasks, with, TASKS, scratch, NULL));
@@ -257,7 +257,85 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 		specimen_free(&specimens[s]);
 }
 
-CHECK_MAIN(cmocka_unit_test(an_isolated_impact_is_two_events), cmocka_unit_test(instants_leave_no_hole),
+/* A story that need not hear of every sample. */
+struct short_story {
+	struct story *story;
+	double most[2];
+	int n_passed;
+};
+
+static void raise_most(double most[2], const struct pound_instant_of_task *instant)
+{
+	const double p = instant->u[0] - instant->u[1];
+	most[0] = fmax(most[0], p);
+	most[1] = fmax(most[1], -p);
+}
+
+static void short_add(void *of, const struct pound_instant_of_task *instant)
+{
+	struct short_story *into = of;
+	raise_most(into->most, instant);
+	story_add(into->story, instant);
+}
+
+static void short_pass(void *of, const struct pound_instant_of_task *instant, int n)
+{
+	struct short_story *into = of;
+	assert_true(n > 0 && instant->sampled && !instant->touching);
+	into->n_passed += n - 1;
+	story_add(into->story, instant);
+}
+
+static void what_is_passed_is_in_the_whole_story_and_nowhere_the_largest(void **state)
+{
+	int passed = 0, heard = 0;
+	(void)state;
+	for (int number = 0; number < 300; number++) {
+		struct specimen specimen;
+		specimen_random(&specimen, number, 0.01, 401);
+		struct pound_task task = floor_task_task(&specimen, number % 3 != 0);
+		for (int lanes = 1; lanes <= 8; lanes = lanes == 1 ? 4 : 2 * lanes) {
+			struct pound_task_result result, same;
+			struct short_story part = {.story = &again};
+			const struct pound_task_observer observer = {
+			    .observe = short_add, .into = &part, .most = part.most, .pass = short_pass};
+			if (!pound_exact_lanes(lanes, &task, &result, 0, scratch, NULL))
+				continue;
+			memset(&result, 0, sizeof result);
+			memset(&same, 0, sizeof same);
+			task.observer = NULL;
+			same = observe(task, lanes, &story);
+			again.n = 0;
+			task.observer = &observer;
+			assert_true(pound_exact_lanes(lanes, &task, &result, 1, scratch, NULL));
+			check_near(result.u[0], same.u[0], 0);
+			check_near(result.v[1], same.v[1], 0);
+			// in order, each of them bit for bit, and the largest of all that are left out
+			double most[2] = {0, 0};
+			int k = 0;
+			for (int i = 0; i < story.n; i++) {
+				raise_most(most, &story.at[i]);
+				if (k < again.n && again.at[k].time == story.at[i].time &&
+				    again.at[k].sampled == story.at[i].sampled && again.at[k].u[0] == story.at[i].u[0] &&
+				    again.at[k].v[1] == story.at[i].v[1] && again.at[k].ground == story.at[i].ground &&
+				    again.at[k].slope == story.at[i].slope)
+					k++;
+			}
+			assert_int_equal(k, again.n);
+			assert_int_equal(again.n + part.n_passed, story.n);
+			check_near(part.most[0], most[0], 0);
+			check_near(part.most[1], most[1], 0);
+			passed += part.n_passed;
+			heard += again.n;
+		}
+		specimen_free(&specimen);
+	}
+	check_report("instants heard %d, passed %d", heard, passed);
+	assert_true(passed > heard / 4);
+}
+
+CHECK_MAIN(cmocka_unit_test(what_is_passed_is_in_the_whole_story_and_nowhere_the_largest),
+           cmocka_unit_test(an_isolated_impact_is_two_events), cmocka_unit_test(instants_leave_no_hole),
            cmocka_unit_test(instants_go_on_in_silence),
            cmocka_unit_test(an_observed_motion_is_that_of_the_unobserved),
            cmocka_unit_test(an_observed_motion_is_that_of_the_adaptive_solver),

@@ -212,7 +212,7 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	largest.task = &task;
 	struct pound_floor_motion motion = {
 	    .task = &task, .stretch = &largest.stretch, .taker = {drive_take, &largest}};
-	const struct pound_task_observer observer = {pound_floor_observe, &motion};
+	const struct pound_task_observer observer = {.observe = pound_floor_observe, .into = &motion};
 	struct pound_task observed = task;
 	observed.observer = &observer;
 	struct pound_task_result result;
