@@ -44,12 +44,13 @@ static int setup(void **state)
 {
 	static const char *const names[N_FILES] = {"study.json", "blocks",      "out",       "err",
 	                                           "token",      "other-token", "worker-err"};
+	char directory[] = "/tmp/pound-test-XXXXXX";
 	int n_more;
 	(void)state;
-	strcpy(world.directory, "/tmp/pound-test-XXXXXX");
-	assert_non_null(mkdtemp(world.directory));
+	assert_non_null(mkdtemp(directory));
+	strcpy(world.directory, directory);
 	for (int i = 0; i < N_FILES; i++)
-		snprintf(world.files[i], sizeof world.files[i], "%s/%s", world.directory, names[i]);
+		snprintf(world.files[i], sizeof world.files[i], "%s/%s", directory, names[i]);
 	token_write(world.files[TOKEN], 'a');
 	token_write(world.files[OTHER_TOKEN], 'b');
 	snprintf(world.at, sizeof world.at, "127.0.0.1:%d", groups_port());

@@ -31,11 +31,10 @@ static char *row_of(const char *kind)
 	char *page = program_file("engine/rooms.md", NULL), head[128];
 	assert_non_null(page);
 	snprintf(head, sizeof head, "\n| %s | ", kind);
-	char *row = strstr(page, head);
-	if (!row)
+	const char *row = strstr(page, head);
+	char *copy = row ? strndup(row, 1 + strcspn(row + 1, "\n")) : NULL;
+	if (!copy)
 		fail_msg("engine/rooms.md has no row of %s", kind);
-	row[1 + strcspn(row + 1, "\n")] = '\0';
-	char *copy = strdup(row);
 	free(page);
 	return copy;
 }
