@@ -128,7 +128,7 @@ static const struct argp_option OPTIONS[] = {
 	{"launcher",   'L', "COMMAND", 0, "command that starts worker processes, such as 'srun pound-worker'", 0},
 	{"launchers",  'B', "N",   0, "run this command N times; each is a worker group that starts and fails independently (default: 1)", 0},
 	{"worker-host", 'Q', "HOST", 0, "name or address of this machine for workers on other machines; listens on all addresses (default: loopback)", 0},
-	{"worker-listen", 'E', "ADDRESS:PORT", 0, "let workers connect there that are started elsewhere, by `pound-worker --connect'", 0},
+	{"worker-listen", 'E', "ADDRESS:PORT", 0, "address and port at which workers that are started elsewhere connect", 0},
 	{"worker-token-file", 'F', "FILE", 0, "token of those workers: 64 hexadecimal digits", 0},
 	{"checkpoint", 'k', "FILE", 0, "keep finished blocks in FILE, and continue with those in it", 0},
 	{"wait",    'w', NULL,     0, "follow the study until it has ended", 0},

@@ -33,7 +33,7 @@ const struct option_row options_table[] = {
 	 NULL, AT(launch.n), 1, COORDINATOR_GROUPS_MAX},
 	{"worker-host",     0,   "HOST",    "name or address by which workers on other machines reach this machine (absent: only local workers can connect)",
 	 NULL, AT(launch.host), 0, 0},
-	{"worker-listen",   0,   "ADDRESS:PORT", "where workers connect that are started elsewhere, by 'pound-worker --connect'", NULL, AT(launch.at), 0, 0},
+	{"worker-listen",   0,   "ADDRESS:PORT", "address and port at which workers that are started elsewhere connect", NULL, AT(launch.at), 0, 0},
 	{"worker-token-file", 0, "FILE",    "token of those workers: 64 hexadecimal digits", NULL, AT(launch.token_file), 0, 0},
 	{"keep-days",       0,   "N",       "days until a finished study is deleted; 0: never", "0", AT(keep_days), 0, 36500},
 	{"keep-samples-days", 0, "N",       "days until the samples of a finished study are deleted; 0: with the study", "0", AT(keep_samples_days), 0, 36500},
