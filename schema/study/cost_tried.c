@@ -49,15 +49,14 @@ static void part_init(struct part *part, const struct pound_study *study)
 		sweep->values = part->values[s];
 		sweep->n_values = SWEEP_VALUES;
 	}
-	const bool sampled = study->kind == POUND_KIND_SENSITIVITY;
-	part->most = sampled ? pound_design_rows_most(study) : study->scene.excitation.signals;
-	part->items = sampled ? 2 : 1;
+	part->most = pound_study_sampled(study) ? pound_design_rows_most(study) : study->scene.excitation.signals;
+	part->items = pound_study_sampled(study) ? 2 : 1;
 }
 
 static void part_take(struct part *part)
 {
 	const struct pound_design *design = &part->study.design;
-	if (part->study.kind != POUND_KIND_SENSITIVITY) {
+	if (!pound_study_sampled(&part->study)) {
 		part->study.scene.excitation.signals = part->items;
 		return;
 	}
@@ -69,6 +68,13 @@ static void part_take(struct part *part)
 	                                           .order = design->order};
 }
 
+/* CPU time of its runs as it is counted [s]. */
+static double counted_of(const struct pound_study *study)
+{
+	const struct pound_study like = study_separation_like(study);
+	return cost_of_runs(&like);
+}
+
 /* Tries a study, and corrects what it is estimated to take.
  *
  * Given    study      valid
@@ -77,23 +83,22 @@ static void part_take(struct part *part)
  * Returns  cost       its CPU times
  * Test     unit_estimates; soak_valid
  */
-void cost_try(struct cost *cost, const struct pound_study *asked, const atomic_bool *unwanted)
+void cost_try(struct cost *cost, const struct pound_study *study, const atomic_bool *unwanted)
 {
-	const struct pound_study study = study_separation_like(asked);
 	// trials of a convergence study are timed anyway
-	if (!cost_tried(cost) || study.kind == POUND_KIND_CONVERGENCE)
+	if (!cost_tried(cost) || study->kind == POUND_KIND_CONVERGENCE)
 		return;
-	const double all = cost_of_runs(&study);
+	const double all = counted_of(study);
 	struct part part;
 	struct trial trial;
-	part_init(&part, &study);
+	part_init(&part, study);
 	for (;; part.items = (int)fmin(MORE * (double)part.items, part.most)) {
 		part_take(&part);
 		trial = trial_run(&part.study, false, TRIAL_MOST, unwanted);
 		if (!trial.complete || trial.cpu_s > TRIAL_ENOUGH || part.items >= part.most)
 			break;
 	}
-	const double counted = cost_of_runs(&part.study);
+	const double counted = counted_of(&part.study);
 	if (!trial.complete && trial.cpu_s > UNCOMMON * counted)
 		trial = trial_run(&part.study, false, UNCOMMON_MOST, unwanted);
 	const double ratio = trial.cpu_s / counted;
