@@ -43,7 +43,9 @@ void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *s
 	const int floors = pound_row_floors(scene), links = pound_row_contacts(scene);
 	int before = 0; // floors of all marches without pounding
 	for (int b = 0; b < scene->n_buildings; b++) {
-		const int marches = 2 + pound_row_law(scene, b)->corrections, storeys = pound_row_storeys(scene, b);
+		const struct pound_law *law = pound_row_law(scene, b);
+		const int marches = pound_law_linear(law->type) ? 1 : 2 + law->corrections,
+		          storeys = pound_row_storeys(scene, b);
 		before += marches * storeys;
 		size->tasks += storeys ? marches : 0;
 		size->modal += (marches + rows) * storeys * storeys;

@@ -147,7 +147,7 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 		numbers =
 		    of_row > 0 ? of_row : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes +=
-		    runs * ((asked->kind == POUND_KIND_SEPARATION ? 0 : SIGNAL_BYTES) + of_row * MEASURE_BYTES) +
+		    runs * (asked->kind == POUND_KIND_SEPARATION ? 0 : SIGNAL_BYTES + of_row * MEASURE_BYTES) +
 		    cells * 20 * study->spectrum.n * NUMBER_BYTES;
 	}
 	const struct pound_run_shared shared = operations_shared(study);

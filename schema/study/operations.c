@@ -31,8 +31,8 @@ static const enum operation step_of[] = {MARCH, NEWMARK, CENTRAL, ADAPT};
 
 static_assert(sizeof step_of / sizeof step_of[0] == POUND_SOLVERS, "a row for each solver");
 
-/* radians of a sample that go by maps, and with more than which a run ends as chatter */
-static const double MAPPED = 2, TURNED_MOST = 5e5;
+/* radians of a sample that go by maps, of two linear bodies together without contact, and with more than which a run ends as chatter */
+static const double MAPPED = 2, PAIR_MAPPED = 1.5, TURNED_MOST = 5e5;
 
 /* The logarithm of a contact's frequency counts from here: square of it over that of the stiffer body. */
 static const double SWINGS = 0.003;
@@ -456,9 +456,10 @@ static void count_free_pairs(const struct pound_study *study, double items, stru
 	const double pairs = items * distinct(study, ALL), samples = pairs * means_samples(study);
 	if (study->scene.n_buildings || !(pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR))
 		return;
-	if (b.marches[0] + b.marches[1] > 0) {
+	const double fastest = 2 * PI * fmax(b.hz[0], b.hz[1]);
+	if (b.marches[0] + b.marches[1] > 0 || fastest * MEAN(study, excitation.time_step, 1) > PAIR_MAPPED) {
 		c->of[PAIR] += samples;
-		c->of[PAIR_TURN] += pairs * 2 * PI * means_duration(study) * fmax(b.hz[0], b.hz[1]);
+		c->of[PAIR_TURN] += pairs * means_duration(study) * fastest;
 	} else
 		c->of[PAIR_MAPS] += samples;
 }
