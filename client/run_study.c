@@ -80,8 +80,8 @@ static enum outcome run_and_print(const struct pound_study *study, const char *d
                                   const struct options *options)
 {
 	struct launch launch = options->launch;
-	char said[512];
-	const bool listens = launch_listen(&launch, said, sizeof said);
+	char said[512] = "";
+	const bool listens = !message_movable(study) || launch_listen(&launch, said, sizeof said);
 	if (*said)
 		command_complain("%s", said);
 	if (!listens)

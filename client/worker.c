@@ -1,4 +1,4 @@
-/* pound-worker: one process that runs blocks for a coordinator, until its connection ends. */
+/* pound-worker: one process that runs blocks for a coordinator until its connection ends, and with --connect another for the next one. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ int main(int argc, char **argv)
 	struct message message = {0};
 	char *body;
 	gsl_set_error_handler_off();
-	if (launcher_ranks() > 1) {
+	if (launcher_ranks() > 1 && !options.at) {
 		fprintf(stderr,
 		        "pound-worker: this is one of %d ranks, each of which would be a group: start one by -n 1, "
 		        "or all of "
@@ -32,9 +32,12 @@ int main(int argc, char **argv)
 	}
 	int connection = worker_connect(&options, options.n_threads, true);
 	struct thread_pool *pool = thread_pool_start(options.n_threads, send_answer, &connection);
-	bool sense = pool;
-	while (sense && worker_take(connection, &message, &body))
+	bool sense = pool, asked = false;
+	for (; sense && worker_take(connection, &message, &body); asked = true)
 		sense = thread_pool_take(pool, &message, body);
+	const bool refused = message.type == MESSAGE_REFUSE;
+	if (options.at && !asked && !refused)
+		fputs("pound-worker: the connection ended before a study came\n", stderr);
 	// threads are at work
-	_exit(sense && message.type != MESSAGE_REFUSE ? EXIT_SUCCESS : EXIT_FAILURE);
+	_exit(sense && !refused && (asked || !options.at) ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -13,6 +13,7 @@
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "schema/message/listen.h"
@@ -23,6 +24,7 @@ enum {
 	PAUSE_MIN = 250,
 	PAUSE_MAX = 2000,
 	PAUSE_REFUSED_MAX = 60000,
+	LASTED = 10, /* [s] with which a connection was a good one, whatever came */
 };
 
 /* Where to connect, and with what token. */
@@ -145,21 +147,29 @@ static int connect_again(const struct place *place)
 	const char *why = "no socket", *said = "";
 	const pid_t parent = getpid();
 	signal(SIGTERM, end);
-	signal(SIGINT, end);
+	if (signal(SIGINT, end) == SIG_IGN)
+		signal(SIGINT, SIG_IGN);
 	for (unsigned pause = PAUSE_MIN, most;; pause = 2 * pause < most ? 2 * pause : most) {
 		int s = connect_to(place, &why), status = 0;
 		if (s < 0 && strcmp(why, said) != 0)
 			complain("waiting for %s, port %s: %s", place->host, place->port, why);
 		said = s < 0 ? why : "";
 		most = s < 0 ? PAUSE_MAX : PAUSE_REFUSED_MAX;
-		pid_t pid = s < 0 ? -1 : fork();
+		const time_t start = time(NULL);
+		const pid_t pid = s < 0 ? -1 : fork();
 		if (pid == 0) {
 			end_with(parent);
+			complain("connected to %s, port %s", place->host, place->port);
 			return s;
 		}
+		if (s >= 0 && pid < 0)
+			complain("cannot start a process: %s", strerror(errno));
 		if (s >= 0)
 			close(s);
-		if (pid > 0 && waitpid(pid, &status, 0) == pid && (!WIFEXITED(status) || WEXITSTATUS(status) == 0))
+		const bool ended = pid > 0 && waitpid(pid, &status, 0) == pid;
+		if (ended && WIFSIGNALED(status))
+			complain("what served the connection was ended by signal %d", WTERMSIG(status));
+		if (ended && (status == 0 || time(NULL) - start >= LASTED))
 			pause = PAUSE_MIN;
 		usleep(1000 * pause);
 	}
@@ -175,9 +185,10 @@ int worker_connect(const struct worker_options *options, int n_threads, bool aga
 		place_of_launcher(&place);
 	const int s = options->at && again ? connect_again(&place) : connect_to(&place, &why);
 	if (s < 0)
-		FAIL("cannot connect to %s, port %s: %s; on another machine than the program that started this one, "
-		     "that program needs --worker-host with a name or address by which this machine reaches it",
-		     place.host, place.port, why);
+		FAIL("cannot connect to %s, port %s: %s%s", place.host, place.port, why,
+		     options->at ? ""
+		                 : "; on another machine than the program that started this one, that program needs "
+		                   "--worker-host with a name or address by which this machine reaches it");
 	why = greet(s, &place, n_threads);
 	if (why)
 		FAIL("cannot send to %s: %s", place.host, why);

@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "schema/message/coordinator.h"
 #include "schema/message/listen.h"
 #include "server/http_calls.h"
 #include "server/log.h"
@@ -77,13 +78,17 @@ static int share_files(struct server *server, int wanted)
 {
 	struct connections *connections = &server->connections;
 	struct rlimit files = {RLIM_INFINITY, RLIM_INFINITY};
-	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + SPOOLED_MAX + FILES_BESIDE;
+	const struct launch *launch = &server->options->launch;
+	// a worker group has a socket that listens, its connection and what wakes its thread
+	const int beside = FILES_BESIDE + 3 * MAX(launch->n, launch->command != NULL) +
+	                   (launch->at ? 2 * COORDINATOR_GROUPS_MAX : 0);
+	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + SPOOLED_MAX + (rlim_t)beside;
 	if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < most) {
 		struct rlimit more = {MIN(files.rlim_max, most), files.rlim_max};
 		if (setrlimit(RLIMIT_NOFILE, &more) == 0)
 			files = more;
 	}
-	const int left = (int)MIN(files.rlim_cur, most) - FILES_BESIDE;
+	const int left = (int)MIN(files.rlim_cur, most) - beside;
 	connections->most_draining = MIN(left / 4, DRAINING_MAX);
 	server->spools.most = MIN(left / 8, SPOOLED_MAX);
 	const int all = MIN(left - connections->most_draining - server->spools.most, CONNECTIONS_MAX);

@@ -108,6 +108,16 @@ static struct coordinator *groups_start(struct work *work, const struct launch *
 	return coordinator_start(launch, &source);
 }
 
+/* Ends the groups; nobody wakes them any more. */
+static void groups_stop(struct work *work)
+{
+	pthread_mutex_lock(&work->lock);
+	struct coordinator *coordinator = work->coordinator;
+	work->coordinator = NULL;
+	pthread_mutex_unlock(&work->lock);
+	coordinator_stop(coordinator);
+}
+
 int work_groups(const struct work *work)
 {
 	return coordinator_groups(work->coordinator);

@@ -676,7 +676,7 @@ bool work_stop(struct work *work)
 	end(job, NULL);
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
-	coordinator_stop(work->coordinator);
+	groups_stop(work);
 	// by the wall's clock, as thread sanitizers know no other join; one that is set back meanwhile is left to the alarm
 	const struct timespec until = at(seconds(CLOCK_REALTIME) + STOP_MAX);
 	for (int w = 0; w < work->n_workers; w++)

@@ -12,6 +12,7 @@
 #include "schema/message/coordinator.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
@@ -33,6 +34,7 @@ enum {
 	LOOK_MS = 200,    /* between two looks at what is not signaled: late blocks, an end of the launcher */
 	IDLE_MAX = 60,    /* [s] without a block, then the group ends */
 	PAUSE_MAX = 60,   /* [s] before a launcher is tried again */
+	REFUSED_MS = 500, /* after a connection that was not let in, so that those cannot fill a log */
 };
 
 /* What a group knows of a study. */
@@ -64,8 +66,6 @@ struct group {
 	int n_out, n_out_max;
 	uint64_t refused[STUDIES_MAX];
 	int n_refused;
-	double *values; /* (n_values) of one block */
-	size_t n_values;
 	bool worked;                 /* a block was run since the launch */
 	char peer[LISTEN_PEER_SIZE]; /* address that it connected from */
 };
@@ -334,6 +334,8 @@ static bool greet(struct group *g)
 	char *version = NULL;
 	bool ready = message_take(g->socket, MESSAGE_OF_WORKER, &m, &version) && m.type == MESSAGE_READY;
 	bool same = ready && m.n == strlen(POUND_VERSION) && memcmp(version, POUND_VERSION, m.n) == 0;
+	for (uint32_t i = 0; ready && i < m.n; i++)
+		version[i] = isprint((unsigned char)version[i]) ? version[i] : '?';
 	if (!ready)
 		turn_away(g, "its first message is not the greeting of a pound-worker");
 	else if (!same)
@@ -398,14 +400,17 @@ static void serve(struct group *g)
 	memset(g->known, 0, sizeof g->known);
 }
 
-/* A connection of what the launcher has started; -1: there is none. */
-static int launched_accept(struct group *g)
+/* Takes a connection of what the launcher has started; false: there is none. */
+static bool launched_accept(struct group *g)
 {
 	const int connection = listen_accept(g->launcher.listens, g->peer);
-	if (connection < 0 || listen_lets_in(connection, g->launcher.token))
-		return connection;
-	close(connection);
-	return -1;
+	if (connection < 0)
+		return false;
+	set_socket(g, connection); // so that the end does not wait for a token
+	if (!g->of->stopping && listen_entry(connection, g->launcher.token) == LISTEN_TOKEN)
+		return true;
+	set_socket(g, -1);
+	return false;
 }
 
 /* Starts the launcher, waits for the connection, serves it. */
@@ -417,17 +422,15 @@ static void launch(struct group *g)
 	if (fault)
 		say(g, "%s", fault);
 	bool ended = fault != NULL;
-	int connection = -1;
-	for (double busy = now_s(); !ended && connection < 0 && !g->of->stopping && now_s() - busy < IDLE_MAX;) {
+	bool connected = false;
+	for (double busy = now_s(); !ended && !connected && !g->of->stopping && now_s() - busy < IDLE_MAX;) {
 		ended = launcher_ended(&g->launcher);
 		if (pause_for(g, g->launcher.listens, LOOK_MS))
-			connection = launched_accept(g);
+			connected = launched_accept(g);
 		if (source->wanted(source->of))
 			busy = now_s();
 	}
 	launcher_close(&g->launcher);
-	const bool connected = connection >= 0;
-	set_socket(g, connection);
 	if (connected)
 		serve(g);
 	else if (ended && !fault)
@@ -473,16 +476,17 @@ static void *waiting_run(void *of)
 		pthread_mutex_lock(&c->lock);
 		const bool next = --c->n_waiting > 0 || c->n == c->n_max || group_start(c);
 		pthread_mutex_unlock(&c->lock);
-		if (!next)
-			say(g, "no thread to wait for further workers");
-		if (c->stopping)
-			set_socket(g, -1);
-		else if (listen_lets_in(connection, c->launch.token))
+		const enum listen_entry entry =
+		    next && !c->stopping ? listen_entry(connection, c->launch.token) : LISTEN_NO_TOKEN;
+		if (entry == LISTEN_TOKEN)
 			serve(g);
-		else {
+		else if (!next) // the worker comes again
+			say(g, "closed: no thread or descriptor to wait for further workers");
+		else if (entry == LISTEN_OTHER_TOKEN)
 			turn_away(g, "the token from %s is not the one of --worker-token-file", g->peer);
-			set_socket(g, -1);
-		}
+		set_socket(g, -1);
+		if (entry != LISTEN_TOKEN && !c->stopping)
+			pause_for(g, -1, REFUSED_MS);
 		pthread_mutex_lock(&c->lock);
 		c->n_waiting++;
 		pthread_mutex_unlock(&c->lock);

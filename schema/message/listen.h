@@ -28,8 +28,10 @@ enum { LISTEN_PEER_SIZE = INET6_ADDRSTRLEN };
 
 /* A connection, not yet let in, and the address that it is from; -1: there is none now. */
 int listen_accept(int socket, char peer[LISTEN_PEER_SIZE]);
-/* Whether a connection starts with the token, which may take 2 s. */
-bool listen_lets_in(int connection, const char token[MESSAGE_TOKEN_SIZE]);
+/* What a connection starts with. */
+enum listen_entry { LISTEN_TOKEN, LISTEN_OTHER_TOKEN, LISTEN_NO_TOKEN };
+/* It has 2 s for all of its token. */
+enum listen_entry listen_entry(int connection, const char token[MESSAGE_TOKEN_SIZE]);
 /* The token of a file; NULL, or what is wrong with the file. */
 const char *listen_token(const char *file, char token[MESSAGE_TOKEN_SIZE + 1]);
 

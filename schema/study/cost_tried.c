@@ -18,7 +18,7 @@ enum { SWEEP_VALUES = 3, MORE = 4 };
 static const double TRIED_LEAST = 0.01, TRIAL_MOST = 0.1, UNCOMMON_MOST = 0.5, TRIAL_ENOUGH = 0.02;
 
 /* of what was counted, with which a trial that was stopped is uncommon */
-static const double UNCOMMON = 0.5;
+static const double UNCOMMON = 0.3;
 
 /* how much more than a few runs all take, in the mean, and than a trial that was stopped had taken until then */
 static const double OTHERS = 1.25, STOPPED = 2;

@@ -4,6 +4,8 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "schema/message/listen.h"
@@ -61,10 +63,11 @@ static bool let_in(const char *bytes, size_t n)
 	assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
 	assert_int_equal(send(ends[0], bytes, n, 0), n);
 	shutdown(ends[0], SHUT_WR);
-	const bool in = listen_lets_in(ends[1], TOKEN);
+	const enum listen_entry entry = listen_entry(ends[1], TOKEN);
+	assert_int_equal(entry == LISTEN_NO_TOKEN, n < MESSAGE_TOKEN_SIZE);
 	close(ends[0]);
 	close(ends[1]);
-	return in;
+	return entry == LISTEN_TOKEN;
 }
 
 static void only_the_whole_token_lets_a_connection_in(void **state)
@@ -79,6 +82,30 @@ static void only_the_whole_token_lets_a_connection_in(void **state)
 		assert_false(let_in(bytes, strlen(bytes)));
 		bytes[i] ^= 1;
 	}
+}
+
+/* One that sends a byte now and then holds nobody up for longer than one that sends nothing. */
+static void a_token_in_drops_comes_too_late(void **state)
+{
+	int ends[2];
+	struct timespec start, end;
+	(void)state;
+	assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+	const pid_t child = fork();
+	for (int i = 0; child == 0 && i < MESSAGE_TOKEN_SIZE; i++) {
+		usleep(100000);
+		if (send(ends[0], TOKEN + i, 1, MSG_NOSIGNAL) != 1)
+			_exit(1);
+	}
+	if (child == 0)
+		_exit(0);
+	close(ends[0]);
+	clock_gettime(CLOCK_MONOTONIC, &start);
+	assert_int_equal(listen_entry(ends[1], TOKEN), LISTEN_NO_TOKEN);
+	clock_gettime(CLOCK_MONOTONIC, &end);
+	assert_true(end.tv_sec - start.tv_sec <= 4); // of 6.4 s that the token takes
+	close(ends[1]);
+	waitpid(child, NULL, 0);
 }
 
 static void a_token_file_that_cannot_be_used_is_refused_with_the_reason(void **state)
@@ -118,6 +145,9 @@ static void a_token_file_that_cannot_be_used_is_refused_with_the_reason(void **s
 	unlink(path);
 	assert_string_equal(listen_token(path, token), "No such file or directory");
 	assert_string_equal(listen_token("/tmp", token), "is not a file");
+	assert_int_equal(mkfifo(path, 0600), 0);
+	assert_string_equal(listen_token(path, token), "is not a file");
+	unlink(path);
 }
 
 int main(int argc, char **argv)
@@ -125,6 +155,7 @@ int main(int argc, char **argv)
 	const struct CMUnitTest tests[] = {
 	    cmocka_unit_test(an_address_and_its_port_are_read_and_nothing_else_is),
 	    cmocka_unit_test(only_the_whole_token_lets_a_connection_in),
+	    cmocka_unit_test(a_token_in_drops_comes_too_late),
 	    cmocka_unit_test(a_token_file_that_cannot_be_used_is_refused_with_the_reason)};
 	(void)argc;
 	return check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
