@@ -65,7 +65,8 @@ static bool split(struct place *place)
 		host[n - 1] = '\0';
 	place->host = host + bracketed;
 	place->port = port;
-	return port && *port && *place->host;
+	return port && *place->host && !strchr(host, '/') && strspn(port, "0123456789") == strlen(port) &&
+	       atol(port) >= 1 && atol(port) <= UINT16_MAX;
 }
 
 static void place_of_options(struct place *place, const struct worker_options *options)
@@ -75,7 +76,7 @@ static void place_of_options(struct place *place, const struct worker_options *o
 		FAIL("token file %s: %s", options->token_file, fault);
 	if (snprintf(place->text, sizeof place->text, "%s", options->at) >= (int)sizeof place->text ||
 	    !split(place))
-		FAIL("--connect must be HOST:PORT");
+		FAIL("--connect must be HOST:PORT, with a port from 1 to 65535");
 }
 
 static void place_of_launcher(struct place *place)
@@ -142,7 +143,7 @@ static void end_with(pid_t parent)
 }
 
 /* Connects, forever; returns in a new process for each connection. */
-static int connect_again(const struct place *place)
+static int connect_again(struct place *place, const char *token_file)
 {
 	const char *why = "no socket", *said = "";
 	const pid_t parent = getpid();
@@ -150,6 +151,9 @@ static int connect_again(const struct place *place)
 	if (signal(SIGINT, end) == SIG_IGN)
 		signal(SIGINT, SIG_IGN);
 	for (unsigned pause = PAUSE_MIN, most;; pause = 2 * pause < most ? 2 * pause : most) {
+		char token[MESSAGE_TOKEN_SIZE + 1];
+		if (!listen_token(token_file, token)) // which may have been replaced
+			memcpy(place->token, token, sizeof token);
 		int s = connect_to(place, &why), status = 0;
 		if (s < 0 && strcmp(why, said) != 0)
 			complain("waiting for %s, port %s: %s", place->host, place->port, why);
@@ -183,7 +187,8 @@ int worker_connect(const struct worker_options *options, int n_threads, bool aga
 		place_of_options(&place, options);
 	else
 		place_of_launcher(&place);
-	const int s = options->at && again ? connect_again(&place) : connect_to(&place, &why);
+	const int s =
+	    options->at && again ? connect_again(&place, options->token_file) : connect_to(&place, &why);
 	if (s < 0)
 		FAIL("cannot connect to %s, port %s: %s%s", place.host, place.port, why,
 		     options->at ? ""

@@ -144,8 +144,9 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 	} else {
 		const double of_row =
 		    study->scene.n_buildings && study->kind != POUND_KIND_CONVERGENCE ? pound_row_measures(study) : 0;
-		numbers =
-		    of_row > 0 ? of_row : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
+		numbers = asked->kind == POUND_KIND_SEPARATION ? 2 * study->n_outputs
+		          : of_row > 0                         ? of_row
+		                       : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
 		cost.bytes +=
 		    runs * (asked->kind == POUND_KIND_SEPARATION ? 0 : SIGNAL_BYTES + of_row * MEASURE_BYTES) +
 		    cells * 20 * study->spectrum.n * NUMBER_BYTES;

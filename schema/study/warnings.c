@@ -131,6 +131,20 @@ static double first_frequency(const struct pound_building *building)
 	return storeys.frequency / (2 * 3.14159265358979323846);
 }
 
+/* A building that is added to a row is not among the contacts by itself. */
+static void look_at_neighbors(struct warnings *all, const struct pound_study *study)
+{
+	const struct pound_scene *scene = &study->scene;
+	for (int b = 0; scene->n_contacts > 0 && b + 1 < scene->n_buildings; b++) {
+		bool meet = false;
+		for (int k = 0; k < scene->n_contacts; k++)
+			meet |= scene->contacts[k].left_building == b;
+		if (!meet)
+			warn(all, "/scene/contacts", "has none of buildings %d and %d: they pass through each other", b,
+			     b + 1);
+	}
+}
+
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
 {
 	// what one in a thousand scenes exceeds: a distribution without an upper end has no shortest period
@@ -247,6 +261,7 @@ void warnings_write(struct writer *w, const struct pound_study *study, const str
 	if (study->elsewhere)
 		return;
 	look_at_masses(&all, study);
+	look_at_neighbors(&all, study);
 	look_at_steps(&all, study);
 	look_at_peaks(&all, study);
 	if (result) {

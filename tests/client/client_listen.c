@@ -279,6 +279,8 @@ static void a_worker_that_cannot_know_where_to_connect_ends(void **state)
 	} cases[] = {
 	    {"localhost", TOKEN, 1, "--connect must be HOST:PORT"},
 	    {"localhost:", TOKEN, 1, "--connect must be HOST:PORT"},
+	    {"localhost:99999", TOKEN, 1, "--connect must be HOST:PORT"},
+	    {"http://localhost:8438", TOKEN, 1, "--connect must be HOST:PORT"},
 	    {"127.0.0.1:1", STUDY, 1, "chmod 600"},
 	};
 	(void)state;

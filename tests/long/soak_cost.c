@@ -52,10 +52,7 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		// below 10 ms the time is the clock's
 		late = took_s > 0.01 ? fmax(late, took_s / cpu_s) : late;
 		early = took_s > 0.01 ? fmax(early, cpu_s / took_s) : early;
-		// blocks that go with the end of a study took room until then
-		snprintf(sql, sizeof sql, "SELECT count(*) FROM block WHERE study = %lld", strtoll(id, NULL, 16));
-		const double spare = service_number(service, sql) > 0 ? bytes / took_bytes : 1;
-		bytes_off = fmax(bytes_off, fmax(spare, took_bytes / bytes));
+		bytes_off = fmax(bytes_off, fmax(bytes / took_bytes, took_bytes / bytes));
 		reading_close(result);
 		answer_free(&answer);
 	}

@@ -18,8 +18,12 @@
 #define ROW(buildings, contact, excitation)                                                       \
 	"{\"kind\": \"response\", \"scene\": {\"buildings\": [" buildings "], \"contact\": {" contact \
 	"}, \"excitation\": {" excitation "}}}"
-#define BODIES "{\"frequency_hz\": 2}, {\"frequency_hz\": 3}"
-#define SHORT  "\"type\": \"white_noise\", \"duration_s\": 2, \"time_step_s\": 0.01, \"signals\": 2"
+#define BODIES  "{\"frequency_hz\": 2}, {\"frequency_hz\": 3}"
+#define STOREYS "\"storeys\": 2, \"mass_kg\": 2e5"
+#define THREE                                                                           \
+	"{" STOREYS ", \"frequency_hz\": 2}, {" STOREYS ", \"frequency_hz\": 3}, {" STOREYS \
+	", \"frequency_hz\": 2.5}"
+#define SHORT "\"type\": \"white_noise\", \"duration_s\": 2, \"time_step_s\": 0.01, \"signals\": 2"
 
 /* What is said of each; NULL pointer: nothing. */
 static const struct {
@@ -47,6 +51,10 @@ static const struct {
      "resounds to",
      false},
     {SCENE(BODIES, "\"gap_m\": 5", SHORT), "/scene/contact/gap_m", "no run has a contact", true},
+    {ROW(THREE, "\"gap_m\": 0}, \"contacts\": [{\"levels\": [2, 2]}], \"law\": {\"type\": \"linear\"",
+         SHORT),
+     "/scene/contacts", "has none of buildings 1 and 2: they pass through each other", false},
+    {ROW(THREE, "\"gap_m\": 0", SHORT), NULL, NULL, false},
     // nothing is run with pounding
     {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT "}}}",
      NULL, NULL, false},
