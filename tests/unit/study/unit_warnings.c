@@ -51,8 +51,7 @@ static const struct {
      "resounds to",
      false},
     {SCENE(BODIES, "\"gap_m\": 5", SHORT), "/scene/contact/gap_m", "no run has a contact", true},
-    {ROW(THREE, "\"gap_m\": 0}, \"contacts\": [{\"levels\": [2, 2]}], \"law\": {\"type\": \"linear\"",
-         SHORT),
+    {ROW(THREE, "\"gap_m\": 0}, \"contacts\": [{\"levels\": [2, 2]}], \"law\": {\"type\": \"linear\"", SHORT),
      "/scene/contacts", "has none of buildings 1 and 2: they pass through each other", false},
     {ROW(THREE, "\"gap_m\": 0", SHORT), NULL, NULL, false},
     // nothing is run with pounding
