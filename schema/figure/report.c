@@ -16,7 +16,7 @@
 #include "schema/result/result_json.h"
 #include "schema/result/widest_interval.h"
 
-enum { CELLS_MOST = 32, CELLS_OF_ALL = 4, NOTES_MOST = 64, COLUMNS_MOST = 128 };
+enum { CELLS_MOST = 32, CELLS_OF_ALL = 4, CONTACTS_MOST = 16, NOTES_MOST = 64, COLUMNS_MOST = 128 };
 
 struct report {
 	struct writer w;
@@ -125,8 +125,10 @@ static void put_head(struct report *report)
 	put_member(report, result, "kind", "kind of study");
 	put_member(report, plot_member(result, "design"), "method", "design");
 	put_member(report, plot_member(result, "design"), "rows", "rows");
-	put_member(report, plot_member(plot_member(result, "work"), "pounding_runs"), "asked",
-	           "responses with pounding");
+	// none is run where no output needs them, or there is no contact
+	const cJSON *work = plot_member(result, "work"), *pounding = plot_member(work, "pounding_runs");
+	if (plot_number(pounding, "run") > 0 || plot_number(work, "never_touching") > 0)
+		put_member(report, pounding, "asked", "responses with pounding");
 	put_member(report, result, "seed", "seed");
 	put_member(report, timing, "cpu_s", "CPU time, s");
 	put_member(report, result, "engine_version", "version of pound");
@@ -238,13 +240,25 @@ static bool takes_cell(const struct figure_row *row)
 	return strstr(row->takes, " cell ") != NULL;
 }
 
-static void put_figure(struct report *report, const struct figure_row *row, int cell)
+/* Contacts of the gaps needed by a row of buildings, each of which has figures of its own; 1: there is no such choice. */
+static int contacts_of(const struct report *report, const struct figure_row *row)
 {
-	char number[16];
+	const cJSON *cell = plot_first(plot_member(report->result, "cells"));
+	const int n = cJSON_GetArraySize(plot_member(cell, "contacts"));
+	const bool chosen = strstr(row->takes, " contact ") && strcmp(row->kind, "separation") == 0 && n > 0;
+	return !chosen ? 1 : n < CONTACTS_MOST ? n : CONTACTS_MOST;
+}
+
+static void put_figure(struct report *report, const struct figure_row *row, int cell, int contact)
+{
+	char number[16], place[16];
 	struct figure figure;
 	snprintf(number, sizeof number, "%d", cell);
+	snprintf(place, sizeof place, "%d", contact);
 	// its text is 6 points in print, and no larger than the page's own on a screen
-	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL, .width = "960"};
+	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL,
+	                                     .contact = contact > 0 ? place : NULL,
+	                                     .width = "960"};
 	enum figure_status status = figure_of(row, report->result, report->source, &choice, &figure);
 	report->failed = report->failed || status == FIGURE_NOMEM;
 	if (status != FIGURE_DRAWN)
@@ -265,8 +279,9 @@ static void put_figures(struct report *report)
 	bool alone = n <= 1 || strcmp(plot_text(report->result, "kind"), "sensitivity") != 0;
 	put(report, "<h2>Figures</h2>\n");
 	for (const struct figure_row *row = figure_rows; row->name; row++)
-		if (figure_shows(row, report->result) && (alone || !takes_cell(row)))
-			put_figure(report, row, 0);
+		for (int contact = 0, most = contacts_of(report, row);
+		     contact < most && figure_shows(row, report->result) && (alone || !takes_cell(row)); contact++)
+			put_figure(report, row, 0, contact);
 	if (alone)
 		return;
 	cJSON_ArrayForEach(cell, cells)
@@ -279,7 +294,7 @@ static void put_figures(struct report *report)
 		for (const struct figure_row *row = figure_rows; row->name; row++)
 			if (takes_cell(row) && figure_shows(row, report->result) &&
 			    (n <= CELLS_OF_ALL || strcmp(row->name, "indices") == 0))
-				put_figure(report, row, k);
+				put_figure(report, row, k, 0);
 		put(report, "</details>\n");
 		k++;
 	}

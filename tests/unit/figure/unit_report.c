@@ -118,6 +118,22 @@ static void a_report_of_a_swept_study_has_the_indices_of_each_cell(void **state)
 	free(document);
 }
 
+/* Of a row of buildings each contact has its own, and runs that were not made are not counted. */
+static void a_report_of_a_row_has_the_gap_of_each_contact(void **state)
+{
+	size_t n;
+	(void)state;
+	struct figure_source source = result_of(example_text("separation_row"));
+	char *page = report_html(&source, NULL, 0, &n);
+	assert_non_null(page);
+	check_page(page);
+	assert_non_null(strstr(page, "contact 0, levels 4 and 4.8 of buildings 0 and 1"));
+	assert_non_null(strstr(page, "contact 1, levels 5.5 and 5 of buildings 1 and 2"));
+	assert_null(strstr(page, "responses with pounding</th><td"));
+	free(page);
+	source_free(&source);
+}
+
 static void warnings_are_said_first(void **state)
 {
 	size_t n;
@@ -163,5 +179,6 @@ static void what_is_no_result_has_no_report(void **state)
 
 CHECK_MAIN(cmocka_unit_test(a_report_has_every_figure_table_note_and_what_was_left_out),
            cmocka_unit_test(a_report_of_a_swept_study_has_the_indices_of_each_cell),
+           cmocka_unit_test(a_report_of_a_row_has_the_gap_of_each_contact),
            cmocka_unit_test(warnings_are_said_first), cmocka_unit_test(a_hostile_name_stays_text),
            cmocka_unit_test(what_is_no_result_has_no_report))
