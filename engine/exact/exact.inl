@@ -456,7 +456,7 @@ LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum po
 		interval_set(sim, next);
 		if (!seldom || !observed(sim))
 			continue;
-		sim->unobserved += substeps_gone[l] * sim->x.substep;
+		substeps_unobserved(sim, substeps_gone[l]);
 		if (entered)
 			simulation_observe(sim, next - 1);
 	}

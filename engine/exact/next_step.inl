@@ -223,7 +223,7 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	    x->substeps *
 	        x->substep; // of the interval: bodies that press each other come to rest inside one, too
 	if (observed(sim))
-		simulation_observe(sim, sim->unobserved > 0 ? -1 : sim->next - 1);
+		simulation_observe(sim, time_unobserved(sim) > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
 		if (observed(sim)) {
 			sim->unobserved = left;

@@ -13,6 +13,22 @@ LANE_INLINE bool observed(const struct simulation *sim)
 	return __builtin_expect(sim->traits & TRAIT_OBSERVED, 0);
 }
 
+/* Time since the last instant [s].  Substeps are counted: how many go by at once is for the scheduler to say. */
+LANE_INLINE double time_unobserved(const struct simulation *sim)
+{
+	return sim->unobserved + sim->unobserved_substeps * sim->unobserved_substep;
+}
+
+LANE_INLINE void substeps_unobserved(struct simulation *sim, double n)
+{
+	if (sim->unobserved_substep != sim->x.substep) {
+		sim->unobserved = time_unobserved(sim);
+		sim->unobserved_substeps = 0;
+		sim->unobserved_substep = sim->x.substep;
+	}
+	sim->unobserved_substeps += n;
+}
+
 /* The instant at which a simulation is.
  *
  * Given    sample  that it is at; < 0: at an event, or where it ended early
@@ -22,7 +38,7 @@ LANE_INLINE void simulation_instant(struct simulation *sim, int64_t sample, stru
 	const struct state_rows *x = &sim->x;
 	const double left = x->remainder + x->substeps * x->substep, step = sim->task->time_step;
 	// member by member: who reads it soon waits for wider stores
-	now->elapsed = sim->unobserved;
+	now->elapsed = time_unobserved(sim);
 	now->sampled = sample >= 0;
 	now->touching = sim->touching;
 	now->overlap = x->p;
@@ -41,7 +57,7 @@ LANE_INLINE void simulation_instant(struct simulation *sim, int64_t sample, stru
 		now->ground = a[0];
 		now->slope = sample < sim->last ? (a[1] - a[0]) * sim->per_step : 0;
 	}
-	sim->unobserved = 0;
+	sim->unobserved = sim->unobserved_substeps = 0;
 }
 
 /* Reports an instant. */

@@ -1,7 +1,8 @@
 /* floor.c - the spectra and the history of one floor under one task.
  *
- * 1. The exact solver follows the task; the floor is its observer, and makes pieces of its motion, stretch by stretch;
- * 2. every oscillator goes over a stretch before the next one is made, so that memory does not grow with time. */
+ * 1. The exact solver follows some tasks at once, in its lanes; each floor is an observer of its own, which keeps the instants that it
+ *    hears of, and makes pieces of its motion of them when it has no room for more, or at the end;
+ * 2. every oscillator goes over these before the next ones are made, so that memory does not grow with time. */
 #include "engine/floor/floor.h"
 
 #include <assert.h>
@@ -13,15 +14,30 @@
 #include "engine/numeric/elementary.h"
 #include "engine/solver/solver.h"
 
+enum { INSTANTS = 256 /* of one floor, until pieces are made of them */ };
+
+/* a floor on its way, and the oscillators on it */
+struct follow {
+	struct pound_floor_motion motion;
+	struct pound_bank bank;
+	struct pound_bank_input input;
+	int lanes; /* of the bank */
+	void *scratch;
+	int n;
+	struct pound_instant_of_task instants[INSTANTS]; /* (n) */
+};
+
 struct pound_floor {
 	int n;         /* frequencies; arrays are in whole groups */
 	double *omega; /* [rad/s] */
-	double *z[POUND_DRIVES], *v[POUND_DRIVES], *top[POUND_DRIVES];
+	double
+	    *states; /* of the oscillators of every floor  (POUND_FLOORS x POUND_DRIVES x 3, whole groups each) */
 	double damping;
-	struct pound_floor_motion motion;
-	struct pound_kernel kernel;
+	struct pound_floor_motion motion; /* of a history */
+	struct pound_segment_powers powers;
 	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 	struct pound_floor_stretch stretch;
+	struct follow follows[POUND_FLOORS];
 };
 
 typedef void width_bank(const struct pound_bank *, const struct pound_bank_input *, void *scratch);
@@ -62,7 +78,7 @@ static int whole_groups(int n)
 size_t pound_floor_bytes(int n_frequencies)
 {
 	return sizeof(struct pound_floor) +
-	       (1 + 3 * POUND_DRIVES) * sizeof(double) * (size_t)whole_groups(n_frequencies);
+	       (1 + POUND_FLOORS * POUND_DRIVES * 3) * sizeof(double) * (size_t)whole_groups(n_frequencies);
 }
 
 struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *spectrum)
@@ -71,15 +87,11 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 	struct pound_floor *floor = memory;
 	int whole = whole_groups(spectrum->n);
 	double *numbers = (double *)(floor + 1);
-	pound_kernel_fill(&floor->kernel);
+	pound_segment_powers_fill(&floor->powers);
 	floor->n = spectrum->n;
 	floor->damping = spectrum->damping_ratio;
 	floor->omega = numbers;
-	for (int d = 0; d < POUND_DRIVES; d++) {
-		floor->z[d] = numbers += whole;
-		floor->v[d] = numbers += whole;
-		floor->top[d] = numbers += whole;
-	}
+	floor->states = numbers + whole;
 	// what fills the last group is its last frequency once more
 	for (int k = 0; k < whole; k++)
 		floor->omega[k] = 2 * PI * pound_spectrum_frequency(spectrum, k < spectrum->n ? k : spectrum->n - 1);
@@ -225,62 +237,126 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 
 /* ---- spectra ---- */
 
-/* what takes a bank over a stretch */
-struct bank_drive {
-	const struct pound_bank *bank;
-	struct pound_bank_input input;
-	int lanes;
-	void *scratch;
-};
-
-static void bank_take(void *of)
+/* Takes the oscillators of a floor over the pieces that were made. */
+static void follow_take(void *of)
 {
-	const struct bank_drive *drive = of;
-	bool done = pound_oscillator_bank_lanes(drive->lanes, drive->bank, &drive->input, drive->scratch);
+	const struct follow *follow = of;
+	bool done = pound_oscillator_bank_lanes(follow->lanes, &follow->bank, &follow->input, follow->scratch);
 	assert(done);
 	(void)done;
 }
 
-/* Pseudo-acceleration spectra of the floor of a task.
+/* Oscillators at rest on the floor number k, of which no instant was reported yet. */
+static struct follow *follow_begin(struct pound_floor *floor, const struct pound_floor_ask *ask, int k)
+{
+	struct follow *follow = &floor->follows[k];
+	const size_t whole = (size_t)whole_groups(floor->n);
+	double *state = floor->states + (size_t)k * POUND_DRIVES * 3 * whole;
+	memset(state, 0, POUND_DRIVES * 3 * whole * sizeof *state);
+	follow->bank = (struct pound_bank){.n_groups = (int)whole / POUND_SPECTRUM_GROUP,
+	                                   .n_drives = ask->n_drives,
+	                                   .damping = floor->damping,
+	                                   .radians = ask->radians,
+	                                   .powers = &floor->powers,
+	                                   .omega = floor->omega};
+	for (int d = 0; d < POUND_DRIVES; d++, state += 3 * whole) {
+		follow->bank.z[d] = state;
+		follow->bank.v[d] = state + whole;
+		follow->bank.top[d] = state + 2 * whole;
+	}
+	follow->input = (struct pound_bank_input){.stretch = &floor->stretch,
+	                                          .time_step = ask->chain.task ? ask->chain.task->time_step
+	                                                                       : ask->task->time_step,
+	                                          .damping = ask->chain.task ? 0 : ask->task->bodies[0].damping};
+	follow->lanes = ask->lanes;
+	follow->scratch = floor->scratch;
+	follow->n = 0;
+	follow->motion = (struct pound_floor_motion){
+	    .task = ask->task, .stretch = &floor->stretch, .taker = {follow_take, follow}, .stop = ask->stop};
+	return follow;
+}
+
+/* Makes pieces of the instants that were kept, and takes the oscillators over them: the stretch is of this floor meanwhile. */
+static void follow_empty(struct follow *follow)
+{
+	for (int i = 0; i < follow->n; i++)
+		pound_floor_observe(&follow->motion, &follow->instants[i]);
+	follow->n = 0;
+	if (!pound_stopped(follow->motion.stop))
+		follow_take(follow);
+	follow->motion.stretch->n = follow->motion.stretch->n_maps = 0;
+}
+
+static void follow_observe(void *of, const struct pound_instant_of_task *instant)
+{
+	struct follow *follow = of;
+	follow->instants[follow->n++] = *instant;
+	if (follow->n == INSTANTS)
+		follow_empty(follow);
+}
+
+static void answer_fill(const struct pound_floor *floor, const struct follow *follow,
+                        const struct pound_task_result *result, struct pound_floor_answer *answer)
+{
+	for (int d = 0; d < follow->bank.n_drives; d++)
+		for (int k = 0; k < floor->n; k++)
+			answer->psa[d][k] = floor->omega[k] * floor->omega[k] * follow->bank.top[d][k];
+	answer->impulse_max = result->impulse_max;
+	answer->contacts = result->contacts;
+	answer->status = pound_stopped(follow->motion.stop) ? POUND_STOPPED
+	                 : follow->motion.status            ? follow->motion.status
+	                                                    : result->status;
+}
+
+/* Pseudo-acceleration spectra of the floors of n tasks, at most POUND_FLOORS.
  *
- * Given    ask      the task; an undefined lane count is a fault of the caller
- * Returns  answer   largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
+ * Given    asks     their tasks, with one stop and one scratch; an undefined lane count is a fault of the caller
+ * Returns  answers  largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
+ *          value    the first status that is not POUND_OK
  * Status   POUND_CHATTER  the motion could not be followed; the answer is not to be used
  *          POUND_STOPPED  stop was set; nor is it
  *
  * Source   model.md 7 of the project's design pages
  * Test     unit_floor
  */
-enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
-                                      struct pound_floor_answer *answer)
+enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *asks,
+                                      struct pound_floor_answer *answers, int n)
 {
-	int whole = whole_groups(floor->n);
-	struct pound_bank bank = {.n_groups = whole / POUND_SPECTRUM_GROUP,
-	                          .n_drives = ask->n_drives,
-	                          .damping = floor->damping,
-	                          .radians = ask->radians,
-	                          .kernel = &floor->kernel,
-	                          .omega = floor->omega};
-	struct bank_drive drive = {
-	    .bank = &bank,
-	    .input = {.stretch = &floor->stretch,
-	              .time_step = ask->chain.task ? ask->chain.task->time_step : ask->task->time_step,
-	              .damping = ask->chain.task ? 0 : ask->task->bodies[0].damping},
-	    .lanes = ask->lanes,
-	    .scratch = floor->scratch};
-	struct pound_task_result result = {0}; // stopped before it began it is not written
-	for (int d = 0; d < ask->n_drives; d++) {
-		bank.z[d] = floor->z[d], bank.v[d] = floor->v[d], bank.top[d] = floor->top[d];
-		memset(floor->z[d], 0, 3 * sizeof(double) * (size_t)whole);
+	struct pound_task observed[POUND_FLOORS];
+	struct pound_task_observer observers[POUND_FLOORS];
+	struct pound_task_result results[POUND_FLOORS] = {0}; // stopped before they began they are not written
+	int of[POUND_FLOORS], n_observed = 0;
+	enum pound_status status = POUND_OK;
+	assert(n <= POUND_FLOORS);
+	for (int k = 0; k < n; k++) {
+		struct follow *follow = follow_begin(floor, &asks[k], k);
+		if (asks[k].chain.task || pound_runs_as_chain(asks[k].task)) {
+			const struct follower chain = {.taker = {follow_take, follow}};
+			follow->motion.status = floor_follow(floor, &asks[k], &chain, &results[k]);
+			continue;
+		}
+		observers[n_observed] = (struct pound_task_observer){.observe = follow_observe, .into = follow};
+		observed[n_observed] = *asks[k].task;
+		observed[n_observed].observer = &observers[n_observed];
+		// the largest displacements, where they are asked for
+		observed[n_observed].bodies[0].followed = observed[n_observed].bodies[1].followed = false;
+		pound_floor_start(&follow->motion);
+		of[n_observed++] = k;
 	}
-	const struct follower follower = {.observer = {.observe = pound_floor_observe, .into = &floor->motion},
-	                                  .taker = {bank_take, &drive}};
-	enum pound_status status = floor_follow(floor, ask, &follower, &result);
-	for (int d = 0; d < ask->n_drives; d++)
-		for (int k = 0; k < floor->n; k++)
-			answer->psa[d][k] = floor->omega[k] * floor->omega[k] * floor->top[d][k];
-	answer->impulse_max = result.impulse_max;
-	answer->contacts = result.contacts;
+	struct pound_task_result found[POUND_FLOORS] = {0};
+	// one task alone is done sooner in one lane than in many
+	bool followed = n_observed == 0 || pound_exact_lanes(n_observed > 1 ? 0 : 1, observed, found, n_observed,
+	                                                     asks->scratch, asks->stop);
+	assert(followed);
+	(void)followed;
+	for (int i = 0; i < n_observed; i++) {
+		follow_empty(&floor->follows[of[i]]);
+		results[of[i]] = found[i];
+	}
+	for (int k = 0; k < n; k++) {
+		answer_fill(floor, &floor->follows[k], &results[k], &answers[k]);
+		status = status ? status : answers[k].status;
+	}
 	return status;
 }
 

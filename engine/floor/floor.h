@@ -7,6 +7,8 @@
 
 struct pound_floor; /* work space of one worker */
 
+enum { POUND_FLOORS = 16 }; /* tasks that are followed at once */
+
 size_t pound_floor_bytes(int n_frequencies);
 struct pound_floor *pound_floor_init(void *memory,
                                      const struct pound_spectrum *spectrum); /* 64-byte aligned */
@@ -34,14 +36,15 @@ struct pound_floor_ask {
 
 /* what comes out; psa: [m/s2]  (n_frequencies) each */
 struct pound_floor_answer {
+	enum pound_status status;
 	double *psa[POUND_DRIVES];
 	// of a pair
 	double impulse_max; /* over the left mass [m/s] */
 	int64_t contacts;
 };
 
-enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *ask,
-                                      struct pound_floor_answer *answer);
+enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *asks,
+                                      struct pound_floor_answer *answers, int n);
 
 /* Both bodies at one time: left, right; of a chain the floor and the level of its contact, without a contact 0 for that level and
  * of the gap. */

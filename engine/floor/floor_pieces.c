@@ -454,6 +454,8 @@ static void free_motion_add(struct pound_floor_motion *motion, int map)
 	piece->state[1] = at->v[0];
 	piece->state[2] = drive * at->ground;
 	piece->state[3] = drive * (at->slope * h);
+	pound_floor_free_motion(piece->state, at->stiffness[0], motion->task->bodies[0].damping, h, 1,
+	                        piece->floor.c);
 	for (int d = 0; d < 3; d++) {
 		piece->floor.bound[d] = piece->push.bound[d] = 0;
 		for (int j = 0; j < 4; j++)
@@ -507,6 +509,7 @@ void pound_floor_observe(void *of, const struct pound_instant_of_task *instant)
 	const double h = motion->task->time_step;
 	if (motion->status || pound_stopped(motion->stop))
 		return;
+	motion->stretch->order = motion->order;
 	if (instant->elapsed > 0) {
 		const bool whole = motion->sampled && instant->sampled;
 		int map = -1;
@@ -555,6 +558,6 @@ void pound_floor_start(struct pound_floor_motion *motion)
 	motion->rate_touch = task->contact ? rate_touch(task, motion->rate) : motion->rate;
 	motion->from = (struct pound_instant_of_task){0};
 	motion->sampled = motion->after_event = false;
+	motion->order = order_of(fmin(motion->rate * task->time_step, REACH));
 	motion->stretch->n = motion->stretch->n_maps = 0;
-	motion->stretch->order = order_of(fmin(motion->rate * task->time_step, REACH));
 }

@@ -33,7 +33,7 @@ struct pound_floor_piece {
 	double state[4];
 	int order;                 /* of floor and push; not of free motion */
 	bool sampled, after_event; /* begins at a sample, at an event */
-	// of free motion only the bounds are set, those of its push 0; pound_floor_drive() has the coefficients of both
+	// of free motion only the bounds and the first two coefficients are set, of its push bounds of 0; pound_floor_drive() has all
 	struct pound_polynomial floor, push;
 };
 
@@ -70,6 +70,7 @@ struct pound_floor_motion {
 	const atomic_bool *stop;             /* when it is set no more pieces are made; NULL: never */
 	enum pound_status status;          /* POUND_CHATTER: a piece could not be made, and none behind it was */
 	double rate, rate_touch;           /* fastest of the bodies, of both in contact [rad/s] */
+	int order;                         /* of the series of free motion over a sample */
 	struct pound_instant_of_task from; /* where the next piece begins */
 	bool sampled, after_event;         /* as struct pound_floor_piece has them */
 	double jump;                       /* likewise */

@@ -2,11 +2,11 @@
 #ifndef OSCILLATOR_BANK_H
 #define OSCILLATOR_BANK_H
 
-#include "engine/floor/power_integrals.h"
+#include "engine/floor/segment_powers.h"
 
 enum {
 	POUND_SPECTRUM_GROUP = 8, /* frequencies that share the length of their steps, whatever the lane count */
-	POUND_SPECTRUM_SCRATCH = 1 << 18, /* bytes of work space, 64-byte aligned */
+	POUND_SPECTRUM_SCRATCH = 1 << 16, /* bytes of work space, 64-byte aligned */
 };
 
 /* Oscillators z'' + 2 xi w z' + w^2 z = -a, one set for each drive a; arrays in whole groups, 64-byte aligned. */
@@ -14,8 +14,8 @@ struct pound_bank {
 	int n_groups;
 	int n_drives;   /* 1: the floor alone */
 	double damping; /* xi  [0, 1) */
-	double radians; /* w * step at most, at most 1.5 */
-	const struct pound_kernel *kernel;
+	double radians; /* w * segment at most, at most 1.5 */
+	const struct pound_segment_powers *powers;
 	const double *omega;                       /* [rad/s]  > 0 */
 	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* now [m], [m/s] */
 	double *top[POUND_DRIVES];                 /* largest |z| so far [m] */

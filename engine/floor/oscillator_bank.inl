@@ -1,11 +1,16 @@
 /* oscillator_bank.inl - oscillators on a floor, driven by its pieces exactly, their largest displacements between steps too.
  *
  * 1. A piece is cut into 2^L equal segments, so that w times a segment is at most 1.5 radians and a power series of the
- *    oscillator ends in rounding; L is that of the fastest of a group of eight.
+ *    oscillator ends in rounding; L is that of the fastest of a group of eight, which go through everything together.
  * 2. A whole sample of free motion is linear in the oscillator's state and four numbers of the floor's, with maps
- *    that are made once; any other piece is done by the series itself.
- * 3. The cubic through both ends of a segment, widened by the bound of its error, proves that no new largest displacement
- *    lies inside; where it does not, the velocity's roots are polished on the series. */
+ *    that are made once; any other piece is done by the series themselves.
+ * 3. What an oscillator's energy and the floor's acceleration allow proves of most pieces that no new largest displacement
+ *    lies inside.  Of the others each segment is looked at: the cubic through both of its ends, widened by the bound of its error,
+ *    proves the same; where it does not, the velocity's roots are polished on the series.
+ *
+ * | z, v | displacement and velocity of an oscillator |   | w, xi | frequency and damping |   | x | w times a segment |
+ * | a, A | the floor's acceleration and its largest magnitude over a piece; A', A'' of its derivatives |
+ * | h | the length of a piece |   | y | velocity in a segment's own time 0 .. 1 | */
 #include "engine/floor/oscillator_bank.h"
 
 #include <assert.h>
@@ -15,61 +20,70 @@
 #include "engine/numeric/lanes.h"
 
 enum {
+	G = POUND_SPECTRUM_GROUP / W, /* vectors of a group */
 	TERMS = POUND_FLOOR_TERMS,
-	SEGMENTS_MAX = POUND_KERNEL_SEGMENTS, /* of a sample that has maps */
-	INTEGRALS = POUND_KERNEL_INTEGRALS,
+	DERIVATIVES = POUND_SEGMENT_DERIVATIVES,
+	SEGMENTS_MAX = POUND_SEGMENTS, /* of a sample that has maps */
 	SEGMENTS_LIMIT = 1 << 24,
 	POLISH =
 	    2, /* rounds of Newton from the cubic's extremum, which misses by 1e-2 at most: 1e-4, 1e-8, squared in z */
 };
 
-/* A segment of a piece: its step and the bounds of the drive over it.  All motions below are in its time 0 .. 1. */
-struct segment {
-	double step; /* [s] */
-	int terms;   /* of a series without a drive, by the fastest of the group */
-	vd x, damp;  /* w step, 2 xi w step */
-	// |z''''|/288 <= on_z |z| + on_v |v| + on_drive (A, A', A''), A of the drive over the piece: see segment_init
-	vd on_z, on_v, on_drive[3];
-};
-
-/* the maps of one segment of a sample: z' = zz z + zv v + gz state, v' = vz z + vv v + gv state */
-struct segment_map {
-	vd gz[4], gv[4];
-};
-
-struct maps {
-	vd zz, zv, vz, vv;
-	struct segment_map segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
-};
-
 struct state {
-	vd z, v, top;
+	vd z[G], v[G], top[G];
 };
 
-struct oscillator_series {
-	int terms;
-	vd z[TERMS + 1], y[TERMS + 1]; /* y: derivative of z */
-	vd z1, y1;
+/* eight oscillators */
+struct group {
+	vd omega[G], per_omega[G];
+	double omega_max, damping;
+	struct state s[POUND_DRIVES];
+};
+
+/* A segment of a piece; all motions below are in its time 0 .. 1. */
+struct segment {
+	double step;          /* [s] */
+	int terms;            /* of a series without a drive, by the fastest of the group */
+	vd damp[G], stiff[G]; /* -2 xi x, -x^2 */
+};
+
+/* Derivatives of a drive where a segment begins, times -step^2; those beyond its order are 0. */
+struct force {
+	alignas(64) double of[DERIVATIVES];
+	int order; /* -1: none */
+};
+
+/* What a time does to a state without a drive: z' = zz z + zv v, v' = vz z + vv v. */
+struct passage {
+	vd zz[G], zv[G], vz[G], vv[G];
+};
+
+/* what the four numbers of a floor in free motion add to it */
+struct drive_map {
+	vd z[4][G], v[4][G];
+};
+
+/* Maps of a whole sample and of its segments, and how far an oscillator may go within the sample: see risk_of_sample. */
+struct maps {
+	struct passage sample, segment;
+	struct drive_map of_sample[POUND_FLOOR_MAPS], of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
+	vd on_start[G], on_rate[G]; /* of a and its rate at the start of the sample */
+	vd on_bound[3][G];          /* of A, A', A'' */
 };
 
 struct scratch {
 	alignas(64) struct maps maps;
-	double integral[POUND_FLOOR_PIECES][POUND_DRIVES][INTEGRALS]; /* of the pieces that have no map */
 };
 
 static_assert(sizeof POUND_TERMS_REACH == (TERMS + 1) * sizeof(double) && (TERMS + 1) % W == 0,
               "whole vectors");
+static_assert(TERMS < DERIVATIVES, "a series has no more than the derivatives of its force");
 static_assert(sizeof(struct scratch) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
 
 static int larger(int a, int b)
 {
 	return a > b ? a : b;
 }
-
-static const double MINUS_SHARE[TERMS + 1] = {
-    -1.0 / 1,  -1.0 / 2,  -1.0 / 3,  -1.0 / 4,  -1.0 / 5,  -1.0 / 6,  -1.0 / 7,  -1.0 / 8,
-    -1.0 / 9,  -1.0 / 10, -1.0 / 11, -1.0 / 12, -1.0 / 13, -1.0 / 14, -1.0 / 15, -1.0 / 16,
-    -1.0 / 17, -1.0 / 18, -1.0 / 19, -1.0 / 20, -1.0 / 21, -1.0 / 22, -1.0 / 23, -1.0 / 24};
 
 /* Terms after which x^n/n! is below rounding, as pound_floor_terms() has them: all are looked at, as no branch foresees where
  * to stop. */
@@ -81,60 +95,91 @@ LANE_INLINE int terms_of(double x)
 	return n;
 }
 
-/* A segment of step h, one of n equal ones of a piece, for oscillators of frequency w.
- *
- * With e = x |z0| + h |v0| + A, x = w h and A, A', A'' bounds of the drive times h^2, in the segment's time:
- * x |z| <= e and |z'| <= e inside, so
- *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
- */
-LANE_INLINE struct segment segment_init(vd omega, double omega_max, double damping, double step, int n)
+/* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
+static int segments_of(double omega_max, double step, double radians)
 {
-	struct segment p = {.step = step, .terms = terms_of(omega_max * step)};
-	const double scale = step * step, share = 1.0 / n;
-	vd x = p.x = omega * step, x2 = x * x, damp = p.damp = x * (2 * damping), both = vfma(damp, damp, x2);
-	vd on_e = vfma(both * x, vsplat(2 * damping + 1), damp * x2) * vsplat(POUND_CUBIC_ERROR);
-	p.on_z = on_e * x;
-	p.on_v = on_e * step;
-	p.on_drive[0] = vfma(both, vsplat(POUND_CUBIC_ERROR), on_e) * vsplat(scale);
-	p.on_drive[1] = damp * vsplat(POUND_CUBIC_ERROR * scale * share);
-	p.on_drive[2] = vsplat(POUND_CUBIC_ERROR * scale * share * share);
-	return p;
+	int n = 1;
+	while (omega_max * step > radians * n && n < SEGMENTS_LIMIT)
+		n *= 2;
+	return n;
 }
 
-/* Acceleration over a segment as a power series: coefficients to be taken times `scale`  (order + 1);  order -1: none. */
-struct drive {
-	const double *a;
-	int order;
-	double scale;
-};
-
-/* Power series of oscillators over a segment.
- *
- * Given    z, y    at the start, y = z' in the segment's time
- *          drive   acceleration of the floor or by the contact
- *
- *   (n + 1) z_n+1 = y_n     (n + 1) y_n+1 = -(2 xi x y_n + x^2 z_n + a_n)
- *
- * Only one fused operation of an order has to wait for the order before.
- */
-LANE_INLINE void series_fill(struct oscillator_series *s, const struct segment *p, vd z, vd y,
-                             const struct drive *drive)
+LANE_INLINE void segment_init(struct segment *p, const struct group *g, double step)
 {
-	vd x2 = p->x * p->x, factor = vsplat(drive->scale);
-	s->terms = larger(p->terms, drive->order + 2);
-	s->z1 = s->y1 = vsplat(0);
-	for (int n = 0;; n++) {
-		s->z[n] = z;
-		s->y[n] = y;
-		s->z1 = s->z1 + z;
-		s->y1 = s->y1 + y;
-		if (n == s->terms)
-			break;
-		vd share = vsplat(POUND_SHARE[n]), minus = vsplat(MINUS_SHARE[n]), force = x2 * z;
-		if (n <= drive->order)
-			force = vfma(factor, vsplat(drive->a[n]), force);
-		z = y * share;
-		y = vfma(p->damp * minus, y, minus * force);
+	p->step = step;
+	p->terms = terms_of(g->omega_max * step);
+	for (int i = 0; i < G; i++) {
+		const vd x = g->omega[i] * step;
+		p->damp[i] = x * (-2 * g->damping);
+		p->stiff[i] = -(x * x);
+	}
+}
+
+/* ---- forces ---- */
+
+/* Coefficients of segment j of n equal ones in its own time, n a power of two, put into `room`. */
+static void coefficients_of_segment(const double *a, int order, int j, int n, double *room)
+{
+	double share = 1.0 / n, from = j * share, power = 1;
+	for (int k = 0; k <= order; k++)
+		room[k] = a[k];
+	for (int i = 0; i < order && j > 0; i++)
+		for (int k = order - 1; k >= i; k--)
+			room[k] += from * room[k + 1];
+	for (int k = 0; k <= order; k++, power *= share)
+		room[k] *= power;
+}
+
+/* The force of a drive in segment j of n, each of length step.
+ *
+ * Given    c  coefficients over the whole piece  (order + 1)
+ */
+LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powers *powers, const double *c,
+                            int order, int j, int n, double step)
+{
+	double room[POUND_FLOOR_ORDER + 1];
+	const vd scale = vsplat(-(step * step));
+	if (n > SEGMENTS_MAX) {
+		coefficients_of_segment(c, order, j, n, room);
+		c = room, n = 1, j = 0;
+	}
+	const double(*row)[DERIVATIVES] = powers->segment[n + j];
+	force->order = order;
+	for (int m = 0; m < DERIVATIVES; m += W) {
+		vd sum = vsplat(0);
+		// where a piece begins a power has one derivative
+		for (int k = j == 0 && order >= m + W ? m + W - 1 : order; k >= m; k--)
+			sum = vfma(vsplat(c[k]), *(const vd *)(row[k] + m), sum);
+		*(vd *)(force->of + m) = sum * scale;
+	}
+}
+
+/* ---- series ---- */
+
+/* Takes a group over a segment.
+ *
+ * Given    z, y  at the start
+ * Returns  z, y  at the end
+ *
+ * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     z = sum d_n/n!, y = sum d_n+1/n!
+ */
+LANE_INLINE void series_pass(const struct segment *p, const struct force *force, vd z[G], vd y[G])
+{
+	const int terms = larger(p->terms, force->order + 2);
+	vd now[G], next[G];
+	for (int i = 0; i < G; i++) {
+		now[i] = z[i], next[i] = y[i];
+		z[i] = y[i] = vsplat(0);
+	}
+	for (int n = 0; n <= terms; n++) {
+		const vd factor = vsplat(POUND_FACTOR[n]), f = vsplat(force->of[n]);
+		for (int i = 0; i < G; i++) {
+			z[i] = vfma(now[i], factor, z[i]);
+			y[i] = vfma(next[i], factor, y[i]);
+			const vd after = vfma(p->damp[i], next[i], vfma(p->stiff[i], now[i], f));
+			now[i] = next[i];
+			next[i] = after;
+		}
 	}
 }
 
@@ -153,48 +198,51 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 
 /* ---- largest displacements ---- */
 
-/* What a drive with these bounds over its piece adds to the error of the cubic of a segment. */
-LANE_INLINE vd drive_error(const struct segment *p, const double bound[3])
-{
-	vd error = p->on_drive[2] * vsplat(bound[2]);
-	for (int k = 1; k >= 0; k--)
-		error = vfma(p->on_drive[k], vsplat(bound[k]), error);
-	return error;
-}
+/* one vector of a group over a segment of a piece */
+struct stage {
+	const struct segment *segment;
+	const struct group *group;
+	int i;               /* of the vector */
+	const double *bound; /* A, A', A'' over the piece */
+	int n;               /* segments of the piece */
+	vd z, v, z1, v1;     /* at the start and at the end */
+};
 
-/* Lanes in which |z| may have a new largest value inside a segment; ends are taken here.
- *
- * Given    z1, v1  at the end;  error: of the drive
- */
-LANE_INLINE vm segment_risk(const struct segment *p, struct state *s, vd z1, vd v1, vd error)
-{
-	vd third = vsplat(p->step * (1.0 / 3));
-	vd b1 = vfma(third, s->v, s->z), b2 = vfma(-third, v1, z1);
-	error = vfma(p->on_z, vabs(s->z), vfma(p->on_v, vabs(s->v), error));
-	s->top = vmax(s->top, vabs(z1));
-	return vless(s->top, vmax(vabs(b1), vabs(b2)) + error);
-}
+/* Coefficients of powers of a segment's own time  (terms + 1) */
+struct series {
+	int terms;
+	vd z[TERMS + 1], y[TERMS + 1], slope[TERMS + 1]; /* slope: derivative of y */
+};
 
 /* |z| at the root of the velocity that Newton's method finds from t; whatever it finds is a value that z takes. */
-LANE_INLINE vd polished(const struct oscillator_series *s, const vd *slope_series, vd t)
+LANE_INLINE vd polished(const struct series *s, vd t)
 {
 	vd zero = vsplat(0), one = vsplat(1);
 	for (int round = 0; round < POLISH; round++) {
-		vd slope = series_at(slope_series, s->terms - 1, t);
+		vd slope = series_at(s->slope, s->terms - 1, t);
 		vd flat = vselect(vequal(slope, zero), one, slope);
 		t = vmin(vmax(t - series_at(s->y, s->terms, t) / flat, zero), one);
 	}
 	return vabs(series_at(s->z, s->terms, t));
 }
 
-/* The larger of |z| at the extrema inside a segment, from both roots of the velocity of the cubic through its ends, and of top. */
-static vd peak_add(const struct oscillator_series *s, vm risk, vd top)
+/* The larger of |z| at the extrema inside a segment, from both roots of the velocity of the cubic through its ends, and of top;
+ * in the lanes of risk. */
+LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force, vm risk, vd top)
 {
-	vd zero = vsplat(0), one = vsplat(1), slope_series[TERMS + 1];
-	for (int n = 0; n < s->terms; n++)
-		slope_series[n] = s->y[n + 1] * vsplat(n + 1);
-	vd y0 = s->y[0], rise = s->z1 - s->z[0];
-	vd a = 3.0 * rise - 2.0 * y0 - s->y1, b = s->y1 + y0 - 2.0 * rise;
+	const struct segment *p = stage->segment;
+	struct series s = {.terms = larger(p->terms, force->order + 2)};
+	vd zero = vsplat(0), one = vsplat(1), now = stage->z, next = stage->v * p->step;
+	for (int n = 0; n <= s.terms; n++) {
+		const vd after = vfma(p->damp[stage->i], next, vfma(p->stiff[stage->i], now, vsplat(force->of[n])));
+		s.z[n] = now * vsplat(POUND_FACTOR[n]);
+		s.y[n] = next * vsplat(POUND_FACTOR[n]);
+		s.slope[n] = after * vsplat(POUND_FACTOR[n]);
+		now = next;
+		next = after;
+	}
+	vd y0 = s.y[0], y1 = stage->v1 * p->step, rise = stage->z1 - stage->z;
+	vd a = 3.0 * rise - 2.0 * y0 - y1, b = y1 + y0 - 2.0 * rise;
 	vd root = vsqrt(vmax(vfma(a, a, -3.0 * b * y0), zero));
 	vd q = -(a + vselect(vless(a, zero), -root, root));
 	vd t[2] = {q / vselect(vequal(b, zero), one, 3.0 * b), y0 / vselect(vequal(q, zero), one, q)},
@@ -203,264 +251,326 @@ static vd peak_add(const struct oscillator_series *s, vm risk, vd top)
 	for (int i = 0; i < 2; i++) {
 		vm inside = vless(vsplat(-0.1), t[i]) & vless(t[i], vsplat(1.1)) & risk;
 		if (vany(inside))
-			most = vselect(inside, vmax(most, polished(s, slope_series, vmin(vmax(t[i], zero), one))), most);
+			most = vselect(inside, vmax(most, polished(&s, vmin(vmax(t[i], zero), one))), most);
 	}
 	return vselect(risk, vmax(top, most), top);
 }
 
-/* ---- drives ---- */
-
-/* Coefficients of segment j of n equal ones in its own time, n a power of two: those of the piece where it is one segment, else
- * put into `room`. */
-static const double *segment_drive(const double *a, int order, int j, int n, double *room)
+/* Lanes in which |z| may have a new largest value inside a segment, by the cubic through its ends; top has that at the end.
+ *
+ * With e = x |z0| + h |v0| + A, h the segment's length and A, A', A'' bounds of the drive times h^2, in the segment's time:
+ * x |z| <= e and |z'| <= e inside, so
+ *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
+ */
+LANE_INLINE vm risk_of_segment(const struct stage *stage, vd top)
 {
-	double share = 1.0 / n, from = j * share, power = 1;
-	if (n == 1)
-		return a;
-	for (int k = 0; k <= order; k++)
-		room[k] = a[k];
-	for (int i = 0; i < order && j > 0; i++)
-		for (int k = order - 1; k >= i; k--)
-			room[k] += from * room[k + 1];
-	for (int k = 0; k <= order; k++, power *= share)
-		room[k] *= power;
-	return room;
-}
-
-/* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
-static int segments_of(double omega_max, double step, double radians)
-{
-	int n = 1;
-	while (omega_max * step > radians * n && n < SEGMENTS_LIMIT)
-		n *= 2;
-	return n;
+	const struct segment *p = stage->segment;
+	const double step = p->step, scale = step * step, share = 1.0 / stage->n, third = step * (1.0 / 3);
+	const vd x = stage->group->omega[stage->i] * step, damp = -p->damp[stage->i], x2 = x * x;
+	const vd a = vsplat(scale * stage->bound[0]), a1 = vsplat(scale * share * stage->bound[1]);
+	const vd a2 = vsplat(scale * share * share * stage->bound[2]);
+	const vd e = vfma(x, vabs(stage->z), vfma(vabs(stage->v), vsplat(step), a));
+	const vd second = vfma(damp + x, e, a);
+	const vd fourth = vfma(damp, vfma(damp, second, vfma(x2, e, a1)), vfma(x2, second, a2));
+	const vd b1 = vfma(vsplat(third), stage->v, stage->z), b2 = vfma(vsplat(-third), stage->v1, stage->z1);
+	return vless(top, vfma(fourth, vsplat(POUND_CUBIC_ERROR), vmax(vabs(b1), vabs(b2))));
 }
 
 /* ---- any piece ---- */
 
-/* Integrals of a polynomial over segment j of n of its piece. */
-static void integrals_fill(const struct pound_kernel *kernel, const double *a, int order, int j, int n,
-                           double integral[INTEGRALS])
+/* Lanes in which |z| may have a new largest value inside a piece of length h; any: there are some.
+ *
+ *   E^2 = z^2 + (v/w)^2     E' <= |a|/w, with any damping     |z| <= E <= E0 + A h/w
+ */
+LANE_INLINE bool risk_of_piece(const struct group *g, const struct state *s, double step, double bound,
+                               vm risk[G])
 {
-	double room[POUND_FLOOR_ORDER + 1];
-	const double *c = n > SEGMENTS_MAX ? segment_drive(a, order, j, n, room) : a;
-	const double(*row)[INTEGRALS] = kernel->segment[n > SEGMENTS_MAX ? 1 : n + j];
-	vd sum[INTEGRALS / W] = {0};
-	for (int k = order; k >= 0; k--)
-#pragma GCC unroll 6
-		for (int i = 0; i < INTEGRALS / W; i++)
-			sum[i] = vfma(vsplat(c[k]), *(const vd *)(row[k] + i * W), sum[i]);
-	for (int i = 0; i < INTEGRALS / W; i++)
-		*(vd *)(integral + i * W) = sum[i];
+	bool any = false;
+	const vd drive = vsplat(step * bound);
+	for (int i = 0; i < G; i++) {
+		const vd rate = s->v[i] * g->per_omega[i], left = s->top[i] - drive * g->per_omega[i];
+		risk[i] = vless(left * vabs(left), vfma(s->z[i], s->z[i], rate * rate));
+		any |= vany(risk[i]);
+	}
+	return any;
 }
 
-/* What a segment does to a state: z' = zz z + zy y + fz, y' = yz z + yy y + fy, and the drives' shares (fz, fy). */
-struct passage {
-	vd zz, zy, yz, yy, fz[POUND_DRIVES], fy[POUND_DRIVES];
-};
-
-/* The passage of a segment by the response h to an initial y of 1, h = sum g_m t^m/m!, for n drives by their integrals.
- *
- *   g_0 = 0, g_1 = 1, g_m+1 = -(2 xi x g_m + x^2 g_m-1)
- *   z' = (h' + 2 xi x h) z + h y - sum g_m J_m     y' = -x^2 h z + h' y - sum g_m+1 J_m,  J_m the (m+1)-fold integral
- */
-LANE_INLINE void passage_fill(struct passage *s, const struct segment *p, const double *const integral[],
-                              int n_drives)
+/* A group over any piece, driven by one of the drives: n segments p, one after the other. */
+LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_bank_input *input,
+                            const struct pound_floor_piece *piece, enum pound_drive drive, struct group *g,
+                            const struct segment *p, int n)
 {
-	vd damp = -p->damp, x2 = -(p->x * p->x), g = vsplat(0), next = vsplat(1), h = g, rate = g;
-	for (int d = 0; d < n_drives; d++)
-		s->fz[d] = s->fy[d] = g;
-	for (int m = 0; m < p->terms; m++) {
-		rate = vfma(next, vsplat(POUND_FACTOR[m]), rate);
-		h = vfma(next, vsplat(POUND_FACTOR[m + 1]), h);
-		for (int d = 0; d < n_drives; d++) {
-			s->fy[d] = vfma(next, vsplat(integral[d][m]), s->fy[d]);
-			s->fz[d] = vfma(next, vsplat(integral[d][m + 1]), s->fz[d]);
+	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
+	struct state *s = &g->s[drive];
+	struct force force;
+	double room[POUND_FLOOR_ORDER + 1];
+	const double *c;
+	vm risk[G];
+	const int order = pound_floor_drive(input->stretch, piece, drive, input->damping, room, &c);
+	const bool any = risk_of_piece(g, s, piece->step, own->bound[0], risk);
+	const double per_step = 1 / p->step;
+	for (int j = 0; j < n; j++) {
+		vd z[G], y[G];
+		force_fill(&force, bank->powers, c, order, j, n, p->step);
+		for (int i = 0; i < G; i++)
+			z[i] = s->z[i], y[i] = s->v[i] * p->step;
+		series_pass(p, &force, z, y);
+		for (int i = 0; i < G; i++) {
+			struct stage stage = {p, g, i, own->bound, n, s->z[i], s->v[i], z[i], y[i] * per_step};
+			if (any && vany(risk[i])) {
+				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
+				const vm inside = risk_of_segment(&stage, s->top[i]) & risk[i];
+				if (vany(inside))
+					s->top[i] = segment_top(&stage, &force, inside, s->top[i]);
+			}
+			s->z[i] = stage.z1;
+			s->v[i] = stage.v1;
 		}
-		vd before = g;
-		g = next;
-		next = vfma(damp, g, x2 * before);
-	}
-	vd minus = vsplat(-(p->step * p->step));
-	for (int d = 0; d < n_drives; d++) {
-		s->fy[d] = s->fy[d] * minus;
-		s->fz[d] = s->fz[d] * minus;
-	}
-	s->zz = vfma(p->damp, h, rate);
-	s->zy = h;
-	s->yz = x2 * h;
-	s->yy = rate;
-}
-
-/* segment j of n equal ones of a piece */
-struct segment_place {
-	const struct pound_bank_input *input;
-	const struct pound_floor_piece *piece;
-	int j, n;
-};
-
-/* The largest |z| of a segment in which there may be an extremum, by its series; in the lanes of `risk`, else top.
- *
- * Given    s  at the start of the segment, the largest so far in `top`
- */
-LANE_SHARED vd segment_top(const struct segment *p, const struct segment_place *at, enum pound_drive drive,
-                           struct state s, vm risk)
-{
-	double made[POUND_FLOOR_ORDER + 1], room[POUND_FLOOR_ORDER + 1];
-	const double *a;
-	struct oscillator_series series;
-	const int order = pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, made, &a);
-	const struct drive of_segment = {segment_drive(a, order, at->j, at->n, room), order, p->step * p->step};
-	series_fill(&series, p, s.z, s.v * p->step, &of_segment);
-	return peak_add(&series, risk, s.top);
-}
-
-/* Moves a state over a segment; the series is only made where there may be an extremum inside.
- *
- * Given    to     its z and v there;  error: of the drive
- */
-LANE_INLINE void segment_pass(const struct segment *p, const struct segment_place *at, enum pound_drive drive,
-                              struct state *s, struct state to, vd error)
-{
-	vm risk = segment_risk(p, s, to.z, to.v, error);
-	if (__builtin_expect(vany(risk), 0))
-		s->top = segment_top(p, at, drive, *s, risk);
-	s->z = to.z;
-	s->v = to.v;
-}
-
-/* Oscillators over one segment of a piece, by the integrals of its drives. */
-LANE_INLINE void segment_move(const struct segment *p, const struct segment_place *at, struct state s[],
-                              int n_drives, const double *const integral[])
-{
-	const struct pound_polynomial *a[POUND_DRIVES] = {&at->piece->floor, &at->piece->push};
-	struct passage passage;
-	double per_step = 1 / p->step;
-	passage_fill(&passage, p, integral, n_drives);
-	for (int d = 0; d < n_drives; d++) {
-		vd y = s[d].v * p->step;
-		vd z1 = vfma(passage.zz, s[d].z, vfma(passage.zy, y, passage.fz[d]));
-		vd y1 = vfma(passage.yz, s[d].z, vfma(passage.yy, y, passage.fy[d]));
-		segment_pass(p, at, d, &s[d], (struct state){.z = z1, .v = y1 * per_step},
-		             drive_error(p, a[d]->bound));
-	}
-}
-
-/* Oscillators over a piece of many segments: each segment has integrals of its own. */
-LANE_SHARED void segments_move(const struct pound_bank *bank, const struct segment *p,
-                               struct segment_place *at, struct state s[])
-{
-	alignas(64) double own[POUND_DRIVES][INTEGRALS];
-	double room[POUND_FLOOR_ORDER + 1];
-	const double *c[POUND_DRIVES], *const integral[POUND_DRIVES] = {own[0], own[1]};
-	int order[POUND_DRIVES];
-	for (int d = 0; d < bank->n_drives; d++)
-		order[d] = pound_floor_drive(at->input->stretch, at->piece, d, at->input->damping, room, &c[d]);
-	for (at->j = 0; at->j < at->n; at->j++) {
-		for (int d = 0; d < bank->n_drives; d++)
-			integrals_fill(bank->kernel, c[d], order[d], at->j, at->n, own[d]);
-		segment_move(p, at, s, bank->n_drives, integral);
 	}
 }
 
 /* ---- free motion ---- */
 
-/* The maps of all segments of a sample, of every stiffness of a stretch. */
-static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct segment *p,
-                      const struct pound_bank_input *input, int segments)
+/* What a segment does to oscillators without a drive. */
+static void passage_fill(struct passage *passage, const struct segment *p)
 {
-	alignas(64) double integrals[INTEGRALS] = {0};
-	const double *const integral[] = {integrals};
-	struct passage passage;
-	vd per_step = vsplat(1 / p->step);
-	const int order = input->stretch->order;
-	passage_fill(&passage, p, integral, 0);
-	maps->zz = passage.zz, maps->vz = passage.yz * per_step;
-	maps->zv = passage.zy * p->step, maps->vv = passage.yy;
-	for (int m = 0; m < input->stretch->n_maps; m++)
-		for (int state = 0; state < 4; state++) {
-			const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
-			const double k = input->stretch->stiffness[m];
-			double a[POUND_FLOOR_ORDER + 1];
-			pound_floor_free_motion(unit, k, input->damping, input->time_step, order, a);
-			for (int j = 0; j < segments; j++) {
-				integrals_fill(bank->kernel, a, order, j, segments, integrals);
-				passage_fill(&passage, p, integral, 1);
-				maps->segment[m][j].gz[state] = passage.fz[0];
-				maps->segment[m][j].gv[state] = passage.fy[0] * per_step;
-			}
+	const struct force none = {.order = -1};
+	const double per_step = 1 / p->step;
+	for (int state = 0; state < 2; state++) {
+		vd z[G], y[G];
+		for (int i = 0; i < G; i++)
+			z[i] = vsplat(state == 0), y[i] = vsplat(state == 0 ? 0 : p->step);
+		series_pass(p, &none, z, y);
+		for (int i = 0; i < G; i++) {
+			(state == 0 ? passage->zz : passage->zv)[i] = z[i];
+			(state == 0 ? passage->vz : passage->vv)[i] = y[i] * per_step;
 		}
+	}
 }
 
-/* A whole sample by maps; the floor's drive has them, the contact gives none. */
-LANE_INLINE void free_move(const struct maps *maps, const struct segment *p, struct segment_place *at,
-                           enum pound_drive drive, struct state *s)
+LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd to_z, vd to_v)
 {
-	const struct pound_floor_piece *piece = at->piece;
-	const bool driven = drive == POUND_DRIVE_FLOOR;
-	const vd error = driven ? drive_error(p, piece->floor.bound) : vsplat(0);
-	vd state[4];
-	for (int k = 0; k < 4; k++)
-		state[k] = vsplat(piece->state[k]);
-	for (at->j = 0; at->j < at->n; at->j++) {
-		vd z = vsplat(0), v = vsplat(0);
-		if (driven) {
-			// what does not wait for the sample before comes first
-			const struct segment_map *f = &maps->segment[piece->map][at->j];
-#pragma GCC unroll 4
-			for (int k = 0; k < 4; k++) {
-				z = vfma(f->gz[k], state[k], z);
-				v = vfma(f->gv[k], state[k], v);
+	to_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, to_z));
+	to_v = vfma(m->vz[i], *z, vfma(m->vv[i], *v, to_v));
+	*z = to_z;
+	*v = to_v;
+}
+
+/* What the floor of a stiffness does to oscillators over the segments of a sample, and over all of them. */
+static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *bank,
+                           const struct pound_bank_input *input, const struct segment *p, int segments)
+{
+	const int order = input->stretch->order;
+	struct force force;
+	for (int state = 0; state < 4; state++) {
+		const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
+		double a[POUND_FLOOR_ORDER + 1];
+		vd end_z[G], end_v[G];
+		for (int i = 0; i < G; i++)
+			end_z[i] = end_v[i] = vsplat(0);
+		pound_floor_free_motion(unit, input->stretch->stiffness[m], input->damping, input->time_step, order,
+		                        a);
+		for (int j = 0; j < segments; j++) {
+			struct drive_map *map = &maps->of_segment[m][j];
+			vd *z = map->z[state], *v = map->v[state];
+			force_fill(&force, bank->powers, a, order, j, segments, p->step);
+			for (int i = 0; i < G; i++)
+				z[i] = v[i] = vsplat(0);
+			series_pass(p, &force, z, v);
+			for (int i = 0; i < G; i++) {
+				v[i] = v[i] / p->step;
+				passage_take(&maps->segment, i, &end_z[i], &end_v[i], z[i], v[i]);
 			}
 		}
-		z = vfma(maps->zz, s->z, vfma(maps->zv, s->v, z));
-		v = vfma(maps->vz, s->z, vfma(maps->vv, s->v, v));
-		segment_pass(p, at, drive, s, (struct state){.z = z, .v = v}, error);
+		for (int i = 0; i < G; i++)
+			maps->of_sample[m].z[state][i] = end_z[i], maps->of_sample[m].v[state][i] = end_v[i];
+	}
+}
+
+/* All maps of a sample, of every stiffness of a stretch. */
+static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct group *g,
+                      const struct pound_bank_input *input, const struct segment *p, int segments)
+{
+	const double h = input->time_step;
+	passage_fill(&maps->segment, p);
+	maps->sample = maps->segment;
+	for (int j = 1; j < segments; j++)
+		for (int i = 0; i < G; i++) {
+			passage_take(&maps->segment, i, &maps->sample.zz[i], &maps->sample.vz[i], vsplat(0), vsplat(0));
+			passage_take(&maps->segment, i, &maps->sample.zv[i], &maps->sample.vv[i], vsplat(0), vsplat(0));
+		}
+	for (int m = 0; m < input->stretch->n_maps; m++)
+		drive_map_fill(maps, m, bank, input, p, segments);
+	for (int i = 0; i < G; i++) {
+		const vd zero = vsplat(0), per = g->per_omega[i], per2 = per * per;
+		const vm fast = vless(vsplat(1), g->omega[i] * h);
+		maps->on_start[i] = vselect(fast, per2, zero);
+		maps->on_rate[i] = vselect(fast, per2 * per * (1 / h), zero);
+		maps->on_bound[0][i] = vselect(fast, per2, per * h);
+		maps->on_bound[1][i] = vselect(fast, per2 * (2 * g->damping), zero);
+		maps->on_bound[2][i] = maps->on_rate[i];
+	}
+}
+
+/* Lanes in which |z| may have a new largest value inside a whole sample h of free motion.
+ *
+ * Given    bound, start, rate  of the drive: A, A', A'', a and its rate where the sample begins, by the share of the sample
+ *
+ * Slow oscillators, w h <= 1, as risk_of_piece has them.  Fast ones follow the floor: with y = z + a/w^2
+ *   y'' + 2 xi w y' + w^2 y = a''/w^2 + 2 xi a'/w     E of y grows by A''/(h w^3) + 2 xi A'/w^2 at most, |z| <= E + A/w^2
+ */
+LANE_INLINE vm risk_of_sample(const struct maps *m, const struct group *g, const struct state *s, int i,
+                              const struct pound_polynomial *a)
+{
+	const vd z = vfma(m->on_start[i], vsplat(a->c[0]), s->z[i]);
+	const vd v = vfma(m->on_rate[i], vsplat(a->c[1]), s->v[i] * g->per_omega[i]);
+	vd left = s->top[i];
+	for (int k = 0; k < 3; k++)
+		left = vfma(m->on_bound[k][i], vsplat(-a->bound[k]), left);
+	return vless(left * vabs(left), vfma(z, z, v * v));
+}
+
+/* one vector of a group over a whole sample */
+struct sample_place {
+	const struct pound_bank *bank;
+	const struct pound_bank_input *input;
+	const struct pound_floor_piece *piece;
+	const struct maps *maps;
+	const struct group *group;
+	const struct segment *whole, *segment;
+	int segments, i;
+};
+
+/* The largest |z| of a sample in the lanes of risk, else top: the cubic through the ends of the sample proves it of slow
+ * oscillators, those through the ends of its segments of others.
+ *
+ * Given    z1, v1  at the end
+ */
+LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd z1, vd v1)
+{
+	static const struct pound_polynomial none = {{0}, {0}};
+	const int i = at->i;
+	const struct state *s = &at->group->s[drive];
+	const bool driven = drive == POUND_DRIVE_FLOOR;
+	double room[POUND_FLOOR_ORDER + 1];
+	const double *c;
+	struct force force;
+	const double *bound = driven ? at->piece->floor.bound : none.bound;
+	const struct stage whole = {at->whole, at->group, i, bound, 1, s->z[i], s->v[i], z1, v1};
+	struct stage stage = {at->segment, at->group, i, bound, at->segments, s->z[i], s->v[i], s->z[i], s->v[i]};
+	vd top = vselect(risk, vmax(s->top[i], vabs(z1)), s->top[i]);
+	risk = risk & risk_of_segment(&whole, top);
+	if (!vany(risk))
+		return top;
+	for (int j = 0; j < at->segments; j++) {
+		const struct drive_map *map = &at->maps->of_segment[at->piece->map][j];
+		vd z = vsplat(0), v = vsplat(0);
+		stage.z = stage.z1, stage.v = stage.v1;
+		for (int k = 0; k < 4 && driven; k++) {
+			z = vfma(map->z[k][i], vsplat(at->piece->state[k]), z);
+			v = vfma(map->v[k][i], vsplat(at->piece->state[k]), v);
+		}
+		passage_take(&at->maps->segment, i, &stage.z1, &stage.v1, z, v);
+		top = vselect(risk, vmax(top, vabs(stage.z1)), top);
+		const vm inside = risk_of_segment(&stage, top) & risk;
+		if (vany(inside)) {
+			const int order =
+			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
+			force_fill(&force, at->bank->powers, c, order, j, at->segments, at->segment->step);
+			top = segment_top(&stage, &force, inside, top);
+		}
+	}
+	return top;
+}
+
+/* A group over a whole sample by maps; the floor's drive has them, the contact gives none. */
+LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, struct group *g)
+{
+	static const struct pound_polynomial none = {{0}, {0}};
+	const bool driven = drive == POUND_DRIVE_FLOOR;
+	const struct pound_floor_piece *piece = at->piece;
+	const struct drive_map *map = &at->maps->of_sample[piece->map];
+	struct state *s = &g->s[drive];
+	for (int i = 0; i < G; i++) {
+		vd z = vsplat(0), v = vsplat(0);
+#pragma GCC unroll 4
+		for (int k = 0; k < 4 && driven; k++) {
+			z = vfma(map->z[k][i], vsplat(piece->state[k]), z);
+			v = vfma(map->v[k][i], vsplat(piece->state[k]), v);
+		}
+		const vm risk = risk_of_sample(at->maps, g, s, i, driven ? &piece->floor : &none);
+		vd z1 = s->z[i], v1 = s->v[i];
+		passage_take(&at->maps->sample, i, &z1, &v1, z, v);
+		if (__builtin_expect(vany(risk), 0)) {
+			at->i = i;
+			s->top[i] = sample_top(at, drive, risk, z1, v1);
+		}
+		s->z[i] = z1;
+		s->v[i] = v1;
 	}
 }
 
 /* ---- the bank ---- */
 
-/* One vector of oscillators over a whole stretch. */
-static void vector_move(const struct pound_bank *bank, const struct pound_bank_input *input, int at,
-                        double omega_max, struct scratch *scratch)
+static void group_load(struct group *g, const struct pound_bank *bank, int at)
 {
-	vd omega = *(const vd *)(bank->omega + at);
-	struct state s[POUND_DRIVES];
+	g->damping = bank->damping;
+	g->omega_max = 0;
+	for (int l = 0; l < POUND_SPECTRUM_GROUP; l++)
+		g->omega_max = bank->omega[at + l] > g->omega_max ? bank->omega[at + l] : g->omega_max;
+	for (int i = 0; i < G; i++) {
+		g->omega[i] = *(const vd *)(bank->omega + at + i * W);
+		g->per_omega[i] = 1.0 / g->omega[i];
+		for (int d = 0; d < bank->n_drives; d++) {
+			g->s[d].z[i] = *(vd *)(bank->z[d] + at + i * W);
+			g->s[d].v[i] = *(vd *)(bank->v[d] + at + i * W);
+			g->s[d].top[i] = *(vd *)(bank->top[d] + at + i * W);
+		}
+	}
+}
+
+static void group_store(const struct group *g, const struct pound_bank *bank, int at)
+{
 	for (int d = 0; d < bank->n_drives; d++)
-		s[d] = (struct state){*(vd *)(bank->z[d] + at), *(vd *)(bank->v[d] + at), *(vd *)(bank->top[d] + at)};
-	int segments = segments_of(omega_max, input->time_step, bank->radians);
-	bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
-	struct segment sample =
-	    segment_init(omega, omega_max, bank->damping, input->time_step / segments, segments);
+		for (int i = 0; i < G; i++) {
+			*(vd *)(bank->z[d] + at + i * W) = g->s[d].z[i];
+			*(vd *)(bank->v[d] + at + i * W) = g->s[d].v[i];
+			*(vd *)(bank->top[d] + at + i * W) = g->s[d].top[i];
+		}
+}
+
+/* One group of oscillators over a whole stretch. */
+static void group_move(const struct pound_bank *bank, const struct pound_bank_input *input, int at,
+                       struct scratch *scratch)
+{
+	struct group g;
+	struct segment whole, of_sample, p;
+	group_load(&g, bank, at);
+	const int segments = segments_of(g.omega_max, input->time_step, bank->radians);
+	const bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
+	segment_init(&whole, &g, input->time_step);
+	segment_init(&of_sample, &g, input->time_step / segments);
 	if (mapped)
-		maps_fill(&scratch->maps, bank, &sample, input, segments);
-	for (int i = 0; i < input->stretch->n; i++) {
-		const struct pound_floor_piece *piece = &input->stretch->piece[i];
-		struct segment_place place = {.input = input, .piece = piece, .n = segments};
+		maps_fill(&scratch->maps, bank, &g, input, &of_sample, segments);
+	for (int k = 0; k < input->stretch->n; k++) {
+		const struct pound_floor_piece *piece = &input->stretch->piece[k];
 		for (int d = 0; d < bank->n_drives && piece->jump != 0; d++)
-			s[d].v = s[d].v - vsplat(piece->jump);
+			for (int i = 0; i < G; i++)
+				g.s[d].v[i] = g.s[d].v[i] - vsplat(piece->jump);
 		if (piece->map >= 0 && mapped) {
-			free_move(&scratch->maps, &sample, &place, POUND_DRIVE_FLOOR, &s[POUND_DRIVE_FLOOR]);
+			struct sample_place place = {bank,       input,    piece, &scratch->maps, &g, &whole,
+			                             &of_sample, segments, 0};
+			sample_move(&place, POUND_DRIVE_FLOOR, &g);
 			if (bank->n_drives > 1)
-				free_move(&scratch->maps, &sample, &place, POUND_DRIVE_PUSH, &s[POUND_DRIVE_PUSH]);
+				sample_move(&place, POUND_DRIVE_PUSH, &g);
 			continue;
 		}
-		place.n = segments_of(omega_max, piece->step, bank->radians);
-		struct segment p = segment_init(omega, omega_max, bank->damping, piece->step / place.n, place.n);
-		const double *const whole[POUND_DRIVES] = {scratch->integral[i][0], scratch->integral[i][1]};
-		if (place.n > 1)
-			segments_move(bank, &p, &place, s);
-		else if (bank->n_drives > 1)
-			segment_move(&p, &place, s, POUND_DRIVES, whole);
-		else
-			segment_move(&p, &place, s, 1, whole);
+		const int n = segments_of(g.omega_max, piece->step, bank->radians);
+		segment_init(&p, &g, piece->step / n);
+		for (int d = 0; d < bank->n_drives; d++)
+			piece_move(bank, input, piece, d, &g, &p, n);
 	}
-	for (int d = 0; d < bank->n_drives; d++) {
-		*(vd *)(bank->z[d] + at) = s[d].z;
-		*(vd *)(bank->v[d] + at) = s[d].v;
-		*(vd *)(bank->top[d] + at) = s[d].top;
-	}
+	group_store(&g, bank, at);
 }
 
 /* Takes all oscillators of a bank over the pieces of a stretch.
@@ -473,23 +583,6 @@ static void vector_move(const struct pound_bank *bank, const struct pound_bank_i
  */
 void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_bank_input *input, void *scratch)
 {
-	struct scratch *room = scratch;
-	for (int i = 0; i < input->stretch->n; i++) {
-		const struct pound_floor_piece *piece = &input->stretch->piece[i];
-		if (piece->map >= 0)
-			continue;
-		integrals_fill(bank->kernel, piece->floor.c, piece->order, 0, 1,
-		               room->integral[i][POUND_DRIVE_FLOOR]);
-		if (bank->n_drives > 1)
-			integrals_fill(bank->kernel, piece->push.c, piece->order, 0, 1,
-			               room->integral[i][POUND_DRIVE_PUSH]);
-	}
-	for (int g = 0; g < bank->n_groups; g++) {
-		const double *omega = bank->omega + g * POUND_SPECTRUM_GROUP;
-		double omega_max = 0;
-		for (int l = 0; l < POUND_SPECTRUM_GROUP; l++)
-			omega_max = omega[l] > omega_max ? omega[l] : omega_max;
-		for (int l = 0; l < POUND_SPECTRUM_GROUP; l += W)
-			vector_move(bank, input, g * POUND_SPECTRUM_GROUP + l, omega_max, room);
-	}
+	for (int g = 0; g < bank->n_groups; g++)
+		group_move(bank, input, g * POUND_SPECTRUM_GROUP, scratch);
 }

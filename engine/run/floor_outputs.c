@@ -33,7 +33,8 @@ struct followed {
 
 struct pound_ordinates {
 	struct pound_floor *floor;
-	double *psa[POUND_DRIVES]; /* (n) */
+	int n;       /* frequencies */
+	double *psa; /* of every floor that is followed at once  (POUND_FLOORS x POUND_DRIVES x n) */
 	struct followed *followed; /* of each task  (n_tasks) */
 	int n_tasks;
 };
@@ -64,7 +65,7 @@ size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks)
 	if (n == 0)
 		return 0;
 	return aligned(sizeof(struct pound_ordinates)) + aligned(pound_floor_bytes(n)) +
-	       POUND_DRIVES * aligned(sizeof(double) * (size_t)n) +
+	       aligned(POUND_FLOORS * POUND_DRIVES * sizeof(double) * (size_t)n) +
 	       aligned(sizeof(struct followed) * (size_t)n_tasks);
 }
 
@@ -74,9 +75,10 @@ struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_stu
 	char *at = (char *)memory + aligned(sizeof *ordinates);
 	ordinates->floor = pound_floor_init(at, &study->spectrum);
 	at += aligned(pound_floor_bytes(study->spectrum.n));
-	for (int d = 0; d < POUND_DRIVES; d++, at += aligned(sizeof(double) * (size_t)study->spectrum.n))
-		ordinates->psa[d] = (double *)(void *)at;
+	ordinates->psa = (double *)(void *)at;
+	at += aligned(POUND_FLOORS * POUND_DRIVES * sizeof(double) * (size_t)study->spectrum.n);
 	ordinates->followed = (struct followed *)(void *)at;
+	ordinates->n = study->spectrum.n;
 	ordinates->n_tasks = n_tasks;
 	return ordinates;
 }
@@ -103,59 +105,113 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 			    rows[row](dirac, 2 * PI * pound_spectrum_frequency(spectrum, k), spectrum->damping_ratio);
 }
 
-/* All spectra of one signal. */
-static enum pound_status spectra_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                      const struct pound_request_floor *request, struct pound_floor_ask ask,
-                                      double *values)
+/* Floors that are to be followed together, for some asks. */
+struct together {
+	int n_floors, n_asks;
+	struct pound_floor_ask asks[POUND_FLOORS];       /* (n_floors) */
+	struct pound_floor_answer answers[POUND_FLOORS]; /* (n_floors) */
+	struct {
+		int ask, first; /* number of the ask, and of its first floor */
+		struct pound_request_floor floor;
+		double *values;
+	} of[POUND_FLOORS]; /* (n_asks) */
+};
+
+/* Another floor: with pounding, or without. */
+static void together_add(struct together *t, struct pound_ordinates *o, struct pound_floor_ask ask,
+                         const struct pound_request_floor *request, bool pounding)
+{
+	ask.task = pounding ? request->pounding : request->free;
+	ask.chain = pounding ? request->row.pounding : request->row.free;
+	struct pound_floor_answer *answer = &t->answers[t->n_floors];
+	*answer = (struct pound_floor_answer){0};
+	for (int d = 0; d < POUND_DRIVES; d++)
+		answer->psa[d] = o->psa + (size_t)(t->n_floors * POUND_DRIVES + d) * (size_t)o->n;
+	t->asks[t->n_floors++] = ask;
+}
+
+/* All spectra of one signal.
+ *
+ * Given    answers  of the floor without pounding, then with it where it touches
+ */
+static void spectra_fill(const struct pound_study *study, const struct pound_request_floor *request,
+                         const struct pound_floor_answer *answers, const atomic_bool *stop, double *values)
 {
 	int n = study->spectrum.n;
-	struct pound_floor_answer answer = {.psa = {o->psa[0], o->psa[1]}};
-	ask.task = request->free;
-	ask.chain = request->row.free;
-	enum pound_status status = pound_floor_spectra(o->floor, &ask, &answer);
-	if (status)
-		return status;
-	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_FREE * n);
-	memset(o->psa[POUND_DRIVE_PUSH], 0, sizeof(double) * (size_t)n);
-	ask.task = request->pounding;
-	ask.chain = request->row.pounding;
-	ask.n_drives = POUND_DRIVES;
-	if (request->touches)
-		status = pound_floor_spectra(o->floor, &ask, &answer);
-	scaled(o->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_POUNDING * n);
-	scaled(o->psa[POUND_DRIVE_PUSH], n, request->exponent, values + POUND_SPECTRUM_IMPACT_ONLY * n);
+	const struct pound_floor_answer *pounding = &answers[request->touches ? 1 : 0];
+	scaled(answers->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_FREE * n);
+	scaled(pounding->psa[POUND_DRIVE_FLOOR], n, request->exponent, values + POUND_SPECTRUM_POUNDING * n);
+	for (int k = 0; k < n; k++)
+		values[POUND_SPECTRUM_IMPACT_ONLY * n + k] =
+		    request->touches ? ldexp(pounding->psa[POUND_DRIVE_PUSH][k], request->exponent) : 0;
 	int pulses = study->spectrum.pulses;
-	const struct pound_pulse_train dirac = {.speed = ldexp(answer.impulse_max, request->exponent),
+	const struct pound_pulse_train dirac = {.speed = ldexp(pounding->impulse_max, request->exponent),
 	                                        .spacing = 0.5 / request->frequency_hz,
-	                                        .pulses = pulses ? pulses : (double)answer.contacts,
-	                                        .stop = ask.stop};
+	                                        .pulses = pulses ? pulses : (double)pounding->contacts,
+	                                        .stop = stop};
 	dirac_fill(&study->spectrum, &dirac, values);
 	values[POUND_N_SPECTRA * n + IMPULSE] = request->mass * dirac.speed;
 	values[POUND_N_SPECTRA * n + PULSES] = dirac.pulses;
-	return status;
 }
 
-/* The ordinates of one sample and signal, or those of the ask before it that has the same floor. */
-static enum pound_status ordinates_fill(struct pound_ordinates *o, const struct pound_study *study,
-                                        const struct pound_request_floor *request, struct pound_floor_ask ask,
-                                        const double *known, double *values)
+/* The ordinates of one sample and signal. */
+static void ordinates_fill(const struct pound_study *study, const struct pound_request_floor *request,
+                           const struct pound_floor_answer *answer, double *values)
 {
-	struct pound_floor_answer answer = {.psa = {o->psa[0]}};
-	ask.task = request->touches ? request->pounding : request->free;
-	ask.chain = request->touches ? request->row.pounding : request->row.free;
-	enum pound_status status = known ? POUND_OK : pound_floor_spectra(o->floor, &ask, &answer);
 	for (int output = 0; output < study->n_outputs; output++) {
 		int k = pound_study_ordinate(study, output);
 		if (k >= 0)
-			values[2 * output] =
-			    known ? known[2 * output] : ldexp(o->psa[POUND_DRIVE_FLOOR][k], request->exponent);
+			values[2 * output] = ldexp(answer->psa[POUND_DRIVE_FLOOR][k], request->exponent);
 	}
-	return status;
+}
+
+/* Follows the floors of some asks, and fills in what was asked of them. */
+static void together_run(struct together *t, struct pound_ordinates *o, const struct pound_study *study,
+                         const atomic_bool *stop)
+{
+	if (t->n_floors)
+		pound_floor_spectra(o->floor, t->asks, t->answers, t->n_floors);
+	for (int i = 0; i < t->n_asks && !pound_stopped(stop); i++) {
+		const struct pound_request_floor *floor = &t->of[i].floor;
+		const struct pound_floor_answer *answers = &t->answers[t->of[i].first];
+		const int n_floors = (i + 1 < t->n_asks ? t->of[i + 1].first : t->n_floors) - t->of[i].first;
+		enum pound_status status = answers->status ? answers->status : answers[n_floors - 1].status;
+		o->followed[floor->march] = (struct followed){t->of[i].ask + 1, status};
+		if (status)
+			continue;
+		if (has_spectra(study))
+			spectra_fill(study, floor, answers, stop, t->of[i].values);
+		else
+			ordinates_fill(study, floor, answers, t->of[i].values);
+	}
+	t->n_floors = t->n_asks = 0;
 }
 
 static int measures_of(const struct pound_study *study)
 {
 	return (has_spectra(study) ? 0 : 2 * study->n_outputs) + pound_ordinate_measures(study);
+}
+
+/* Gives asks of one floor the ordinates of the first of them; a run whose floor could not be followed has failed, also where
+ * another ask followed that floor. */
+static void ordinates_share(const struct pound_ordinates *o, const struct pound_study *study,
+                            const struct pound_request *request, double *values, struct pound_work *work)
+{
+	int n_items, n_asks = pound_request_count(request, &n_items), n = measures_of(study);
+	for (int a = 0; a < n_asks; a++) {
+		const struct followed *followed = &o->followed[pound_request_floor(request, a).march];
+		double *own = values + (size_t)a * (size_t)n;
+		if (isnan(own[n - 1]))
+			continue;
+		const double *known = values + (size_t)(followed->ask - 1) * (size_t)n;
+		for (int output = 0; output < study->n_outputs && known != own && !has_spectra(study); output++)
+			if (pound_study_ordinate(study, output) >= 0)
+				own[2 * output] = known[2 * output];
+		if (followed->status <= POUND_CHATTER && a < n_items)
+			work->failed[POUND_CHATTER - followed->status]++;
+		for (int j = 0; j < n && followed->status; j++)
+			own[j] = NAN;
+	}
 }
 
 /* Adds to a block that the request has run what spectra its study asks for.
@@ -172,31 +228,37 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
                                        const atomic_bool *stop, struct pound_work *work)
 {
 	int n_items, n_asks = pound_request_count(request, &n_items), n = measures_of(study);
+	const bool spectra = has_spectra(study);
+	struct together together = {0};
 	memset(o->followed, 0, sizeof *o->followed * (size_t)o->n_tasks);
-	for (int a = 0; a < n_asks && !pound_stopped(stop); a++, values += n) {
+	for (int a = 0; a < n_asks && !pound_stopped(stop); a++) {
 		const struct pound_request_floor floor = pound_request_floor(request, a);
-		const struct pound_floor_ask ask = {.n_drives = 1,
+		const struct pound_floor_ask ask = {.n_drives = spectra ? POUND_DRIVES : 1,
 		                                    .radians = a < n_items ? RADIANS : RADIANS_CHECK,
 		                                    .stop = stop,
 		                                    .scratch = floor.scratch};
+		const int floors = spectra && floor.touches ? 2 : 1;
+		double *own = values + (size_t)a * (size_t)n;
 		assert(floor.march < o->n_tasks);
-		struct followed *followed = &o->followed[floor.march];
-		const int before = has_spectra(study) ? 0 : followed->ask;
-		const double *known = before ? values - (size_t)(a + 1 - before) * (size_t)n : NULL;
-		int floors = has_spectra(study) && floor.touches ? 2 : 1;
 		work->floors.asked += a < n_items ? floors : 0;
-		if (isnan(values[n - 1]))
+		if (isnan(own[n - 1]) || (!spectra && o->followed[floor.march].ask))
 			continue;
-		enum pound_status status = has_spectra(study) ? spectra_fill(o, study, &floor, ask, values)
-		                                              : ordinates_fill(o, study, &floor, ask, known, values);
-		work->floors.run += a < n_items && !known ? floors : 0;
-		*followed = (struct followed){a + 1, known ? followed->status : status};
-		// a run whose floor could not be followed has failed, also where another ask followed that floor
-		if (followed->status <= POUND_CHATTER && a < n_items)
-			work->failed[POUND_CHATTER - followed->status]++;
-		for (int j = 0; j < n && followed->status; j++)
-			values[j] = NAN;
+		work->floors.run += a < n_items ? floors : 0;
+		if (together.n_floors + floors > POUND_FLOORS)
+			together_run(&together, o, study, stop);
+		o->followed[floor.march].ask = a + 1;
+		together.of[together.n_asks].ask = a;
+		together.of[together.n_asks].first = together.n_floors;
+		together.of[together.n_asks].floor = floor;
+		together.of[together.n_asks++].values = own;
+		if (spectra)
+			together_add(&together, o, ask, &floor, false);
+		if (!spectra || floor.touches)
+			together_add(&together, o, ask, &floor, floor.touches);
 	}
+	together_run(&together, o, study, stop);
+	if (!pound_stopped(stop))
+		ordinates_share(o, study, request, values, work);
 	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
 }
 

@@ -40,7 +40,7 @@ static void move(void *of)
 	const struct pound_floor_ask ask = {
 	    .task = ridden->task, .n_drives = ridden->n_drives, .radians = 1.5, .scratch = ridden->scratch};
 	struct pound_floor_answer answer = {.psa = {ridden->psa[0], ridden->psa[1]}};
-	if (pound_floor_spectra(ridden->floor, &ask, &answer))
+	if (pound_floor_spectra(ridden->floor, &ask, &answer, 1))
 		bench_fail("a floor could not be followed");
 }
 

@@ -38,7 +38,7 @@ struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
 	const struct pound_floor_ask ask = {
 	    .task = task, .n_drives = n_drives, .radians = radians, .lanes = lanes, .scratch = scratch};
 	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
-	assert_int_equal(pound_floor_spectra(floor, &ask, &answer), POUND_OK);
+	assert_int_equal(pound_floor_spectra(floor, &ask, &answer, 1), POUND_OK);
 	free(memory);
 	return answer;
 }

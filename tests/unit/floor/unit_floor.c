@@ -272,7 +272,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	specimen_init(&specimen);
 	specimen_reference(&specimen, &specimen_references[0], 0.0025);
 	const struct pound_task task = floor_task_task(&specimen, true);
-	_Alignas(64) static char memory[1 << 20];
+	_Alignas(64) static char memory[1 << 21];
 	assert_true(pound_floor_bytes(1) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
 	struct rows rows = {.step = task.time_step};
@@ -315,7 +315,7 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 	    .contact = true,
 	    .contact_stiffness = specimen.study.scene.contact.stiffness_ratio * stiffness,
 	    .tension = true};
-	_Alignas(64) static char memory[1 << 20];
+	_Alignas(64) static char memory[1 << 21];
 	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
 	struct pound_floor_answer answer = {.psa = {psa[0], psa[1]}};
 	for (int history = 0; history < 2; history++) {
@@ -324,7 +324,7 @@ static void a_floor_that_takes_hours_is_stopped(void **state)
 		    .task = &task, .n_drives = 1, .radians = 1.5, .stop = &stop, .scratch = scratch};
 		pthread_t thread = specimen_later(stop_set, &stop);
 		assert_int_equal(history ? pound_floor_history(floor, &ask, nothing_take, NULL)
-		                         : pound_floor_spectra(floor, &ask, &answer),
+		                         : pound_floor_spectra(floor, &ask, &answer, 1),
 		                 POUND_STOPPED);
 		pthread_join(thread, NULL);
 	}

@@ -24,7 +24,7 @@ static void row_take(void *to, const struct pound_floor_instant *row)
 
 static void rows_take(const struct pound_task *task, const struct pound_spectrum *spectrum)
 {
-	static _Alignas(64) char memory[1 << 20];
+	static _Alignas(64) char memory[1 << 21];
 	assert_true(pound_floor_bytes(spectrum->n) <= sizeof memory);
 	struct pound_floor *floor = pound_floor_init(memory, spectrum);
 	const struct pound_floor_ask ask = {.task = task, .scratch = scratch};

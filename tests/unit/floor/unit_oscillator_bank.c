@@ -12,14 +12,14 @@ enum { OSCILLATORS = 16 };
 static struct pound_floor_stretch stretch;
 static _Alignas(64) double omega[OSCILLATORS], state_of[2][3][OSCILLATORS];
 static _Alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
-static struct pound_kernel kernel;
+static struct pound_segment_powers powers;
 
 /* A bank at rest; oscillators beyond n are the last one once more. */
 static struct pound_bank bank_of(const double *w, int n, double xi)
 {
-	pound_kernel_fill(&kernel);
+	pound_segment_powers_fill(&powers);
 	struct pound_bank bank = {.n_groups = OSCILLATORS / POUND_SPECTRUM_GROUP,
-	                          .kernel = &kernel,
+	                          .powers = &powers,
 	                          .n_drives = 1,
 	                          .damping = xi,
 	                          .radians = 1.5,

@@ -1,0 +1,28 @@
+/* segment_powers.c - derivatives of powers where segments of a piece begin. */
+#include "engine/floor/segment_powers.h"
+
+#include <string.h>
+
+/* All segments of all powers of two.
+ *
+ *   t = (j + s)/n     d^m/ds^m t^k = k!/(k - m)! (j/n)^(k - m) n^-m  at s = 0
+ *
+ * Valid    exact but for rounding
+ * Test     unit_segment_powers
+ */
+void pound_segment_powers_fill(struct pound_segment_powers *powers)
+{
+	memset(powers, 0, sizeof *powers);
+	for (int n = 1; n <= POUND_SEGMENTS; n *= 2)
+		for (int j = 0; j < n; j++)
+			for (int k = 0; k <= POUND_FLOOR_ORDER; k++) {
+				double falling = 1; // k!/(k - m)! n^-m
+				for (int m = 0; m <= k; m++) {
+					double power = falling;
+					for (int e = 0; e < k - m; e++)
+						power *= (double)j / n;
+					powers->segment[n + j][k][m] = power;
+					falling *= (double)(k - m) / n;
+				}
+			}
+}
