@@ -212,7 +212,11 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 {
 	struct pound_floor_motion *motion = &floor->motion;
 	*motion = (struct pound_floor_motion){
-	    .stretch = &floor->stretch, .taker = follower->taker, .stop = ask->stop, .beside = follower->beside};
+	    .stretch = &floor->stretch,
+	    .taker = follower->taker,
+	    .stop = ask->stop,
+	    .pushed = true,
+	    .beside = follower->beside};
 	if (ask->chain.task) {
 		// a history is of one contact, spectra are of all
 		const int link = follower->beside ? pound_floor_contact(&ask->chain) : -1;
@@ -474,7 +478,7 @@ static void motion_fill(struct piece_motion *m, const struct chronicle *chronicl
 	const double h = p->step, *c;
 	const double slope = chronicle->of_chain ? chronicle->beside.slope : chronicle->from.slope;
 	const double damping = chronicle->of_chain ? 0 : floor->motion.task->bodies[0].damping;
-	double room[POUND_FLOOR_ORDER + 1];
+	double room[POUND_FLOOR_ROOM];
 	*m = (struct piece_motion){.start = p->start, .step = h, .ground = {start->ground, slope * h}};
 	for (int d = 0; d < POUND_DRIVES; d++) {
 		const int order = pound_floor_drive(&floor->stretch, p, (enum pound_drive)d, damping, room, &c);

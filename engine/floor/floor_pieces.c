@@ -130,7 +130,7 @@ void pound_floor_free_motion(const double state[4], double k, double c, double h
  * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
 int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
-                      enum pound_drive drive, double damping, double room[N + 1], const double **c)
+                      enum pound_drive drive, double damping, double room[POUND_FLOOR_ROOM], const double **c)
 {
 	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
 	*c = own->c;
@@ -469,8 +469,8 @@ static void series_add(struct pound_floor_motion *motion, const struct pound_ins
 {
 	struct pound_floor_piece *piece = piece_next(motion, at, s->step);
 	piece->order = polynomial_fill(&piece->floor, s->floor, s->order, at->spring_offset[0], s->step);
-	if (!at->touching) {
-		memset(&piece->push, 0, sizeof piece->push);
+	if (!at->touching || !motion->pushed) {
+		memset(piece->push.bound, 0, sizeof piece->push.bound);
 		return;
 	}
 	int order = polynomial_fill(&piece->push, s->push, s->order, 0, s->step);

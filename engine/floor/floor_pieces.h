@@ -10,6 +10,7 @@
 
 enum {
 	POUND_FLOOR_ORDER = 21,   /* of a piece's power series, at most */
+	POUND_FLOOR_ROOM = 24,    /* for its coefficients, whole vectors */
 	POUND_FLOOR_TERMS = 23,   /* of any motion it drives: 1.5^23/23! is below rounding */
 	POUND_FLOOR_PIECES = 512, /* given to the observer at once */
 	POUND_FLOOR_MAPS = 4,     /* different stiffnesses of free motion among them */
@@ -21,7 +22,7 @@ enum pound_drive { POUND_DRIVE_FLOOR, POUND_DRIVE_PUSH, POUND_DRIVES };
 /* Coefficients of powers of time over the piece's step, and bounds of |a|, |a'|, |a''| in that time  [m/s2] */
 struct pound_polynomial {
 	double bound[3];
-	double c[POUND_FLOOR_ORDER + 1]; /* (order + 1) */
+	double c[POUND_FLOOR_ROOM]; /* (order + 1) */
 };
 
 struct pound_floor_piece {
@@ -74,6 +75,7 @@ struct pound_floor_motion {
 	struct pound_instant_of_task from; /* where the next piece begins */
 	bool sampled, after_event;         /* as struct pound_floor_piece has them */
 	double jump;                       /* likewise */
+	bool pushed;                       /* the contact's part is wanted; false: its bounds are 0 */
 	struct pound_floor_beside *beside; /* of a chain: not NULL, every piece is taken at once */
 };
 
@@ -81,7 +83,7 @@ struct pound_floor_motion {
 void pound_floor_free_motion(const double state[4], double k, double c, double h, int order, double *a);
 /* Coefficients of a drive over any piece, and their order. */
 int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct pound_floor_piece *piece,
-                      enum pound_drive drive, double damping, double room[POUND_FLOOR_ORDER + 1],
+                      enum pound_drive drive, double damping, double room[POUND_FLOOR_ROOM],
                       const double **c);
 
 /* Terms after which x^n/n! is below rounding, n <= POUND_FLOOR_TERMS. */

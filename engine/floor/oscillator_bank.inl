@@ -132,25 +132,29 @@ static void coefficients_of_segment(const double *a, int order, int j, int n, do
 
 /* The force of a drive in segment j of n, each of length step.
  *
- * Given    c  coefficients over the whole piece  (order + 1)
+ * Given    c  coefficients over the whole piece  (order + 1, with room for DERIVATIVES)
  */
 LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powers *powers, const double *c,
                             int order, int j, int n, double step)
 {
-	double room[POUND_FLOOR_ORDER + 1];
+	double room[POUND_FLOOR_ROOM];
 	const vd scale = vsplat(-(step * step));
 	if (n > SEGMENTS_MAX) {
 		coefficients_of_segment(c, order, j, n, room);
 		c = room, n = 1, j = 0;
 	}
-	const double(*row)[DERIVATIVES] = powers->segment[n + j];
 	force->order = order;
-	for (int m = 0; m < DERIVATIVES; m += W) {
+	// where a piece begins every power has one derivative
+	for (int m = 0; m < DERIVATIVES && j == 0; m += W) {
+		const vm kept = vless(lanes_load(&powers->number[m]), vsplat(order + 1));
+		const vd derivative = lanes_load(&c[m]) * lanes_load(&powers->start[n][m]);
+		lanes_store(&force->of[m], vselect(kept, derivative * scale, vsplat(0)));
+	}
+	for (int m = 0; m < DERIVATIVES && j > 0; m += W) {
 		vd sum = vsplat(0);
-		// where a piece begins a power has one derivative
-		for (int k = j == 0 && order >= m + W ? m + W - 1 : order; k >= m; k--)
-			sum = vfma(vsplat(c[k]), *(const vd *)(row[k] + m), sum);
-		*(vd *)(force->of + m) = sum * scale;
+		for (int k = order; k >= m; k--)
+			sum = vfma(vsplat(c[k]), lanes_load(&powers->segment[n + j][k][m]), sum);
+		lanes_store(&force->of[m], sum * scale);
 	}
 }
 
@@ -303,7 +307,7 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
 	struct state *s = &g->s[drive];
 	struct force force;
-	double room[POUND_FLOOR_ORDER + 1];
+	double room[POUND_FLOOR_ROOM];
 	const double *c;
 	vm risk[G];
 	const int order = pound_floor_drive(input->stretch, piece, drive, input->damping, room, &c);
@@ -364,7 +368,7 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 	struct force force;
 	for (int state = 0; state < 4; state++) {
 		const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
-		double a[POUND_FLOOR_ORDER + 1];
+		double a[POUND_FLOOR_ROOM];
 		vd end_z[G], end_v[G];
 		for (int i = 0; i < G; i++)
 			end_z[i] = end_v[i] = vsplat(0);
@@ -452,7 +456,7 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 	const int i = at->i;
 	const struct state *s = &at->group->s[drive];
 	const bool driven = drive == POUND_DRIVE_FLOOR;
-	double room[POUND_FLOOR_ORDER + 1];
+	double room[POUND_FLOOR_ROOM];
 	const double *c;
 	struct force force;
 	const double *bound = driven ? at->piece->floor.bound : none.bound;

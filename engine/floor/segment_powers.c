@@ -13,6 +13,8 @@
 void pound_segment_powers_fill(struct pound_segment_powers *powers)
 {
 	memset(powers, 0, sizeof *powers);
+	for (int m = 0; m < POUND_SEGMENT_DERIVATIVES; m++)
+		powers->number[m] = m;
 	for (int n = 1; n <= POUND_SEGMENTS; n *= 2)
 		for (int j = 0; j < n; j++)
 			for (int k = 0; k <= POUND_FLOOR_ORDER; k++) {
@@ -24,5 +26,6 @@ void pound_segment_powers_fill(struct pound_segment_powers *powers)
 					powers->segment[n + j][k][m] = power;
 					falling *= (double)(k - m) / n;
 				}
+				powers->start[n][k] = powers->segment[n][k][k];
 			}
 }

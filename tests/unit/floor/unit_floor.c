@@ -186,7 +186,7 @@ static void drive_take(void *of)
 	struct largest_drive *largest = of;
 	for (int i = 0; i < largest->stretch.n; i++)
 		for (int part = 0; part <= 100; part++) {
-			double a = 0, room[POUND_FLOOR_ORDER + 1];
+			double a = 0, room[POUND_FLOOR_ROOM];
 			const double *c, damping = largest->task->bodies[0].damping;
 			for (int n = pound_floor_drive(&largest->stretch, &largest->stretch.piece[i], POUND_DRIVE_FLOOR,
 			                               damping, room, &c);

@@ -60,7 +60,7 @@ static void pieces_take(void *of)
 	for (int i = 0; i < stretch.n; i++) {
 		const struct pound_floor_piece *p = &stretch.piece[i];
 		const double damping = task->bodies[0].damping, drive = task->bodies[0].drive;
-		double room[2][POUND_FLOOR_ORDER + 1], sums[2][2] = {{0}};
+		double room[2][POUND_FLOOR_ROOM], sums[2][2] = {{0}};
 		assert_true(p->step > 0 && p->map < stretch.n_maps);
 		piece_follow(f, p->start, p->u, p->v);
 		for (int d = 0; d < POUND_DRIVES; d++) {
@@ -92,7 +92,7 @@ static void follow(struct followed *f, const struct pound_task *task)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	*f = (struct followed){.task = task};
-	struct pound_floor_motion motion = {.task = task, .stretch = &stretch, .taker = {pieces_take, f}};
+	struct pound_floor_motion motion = {.task = task, .stretch = &stretch, .taker = {pieces_take, f}, .pushed = true};
 	const struct pound_task_observer observer = {.observe = pound_floor_observe, .into = &motion};
 	struct pound_task observed = *task;
 	observed.observer = &observer;

@@ -13,6 +13,9 @@ static void the_whole_piece_gives_factorials(void **state)
 	for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
 		for (int m = 0; m < POUND_SEGMENT_DERIVATIVES; m++)
 			check_near(powers.segment[1][k][m] / tgamma(k + 1), m == k, 1e-14);
+	for (int n = 1; n <= POUND_SEGMENTS; n *= 2)
+		for (int k = 0; k <= POUND_FLOOR_ORDER; k++)
+			check_near(powers.start[n][k] * pow(n, k) / tgamma(k + 1), 1, 1e-14);
 }
 
 /* The series of a segment gives the power at its middle and at its end. */
