@@ -10,7 +10,7 @@
 #include "engine/result.h"
 #include "engine/study.h"
 
-#define POUND_VERSION "0.20.0"
+#define POUND_VERSION "0.21.0"
 
 /* One study being computed; owns all its memory.  The study must outlive it.
  *

@@ -211,12 +211,11 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
                                       const struct follower *follower, struct pound_task_result *result)
 {
 	struct pound_floor_motion *motion = &floor->motion;
-	*motion = (struct pound_floor_motion){
-	    .stretch = &floor->stretch,
-	    .taker = follower->taker,
-	    .stop = ask->stop,
-	    .pushed = true,
-	    .beside = follower->beside};
+	*motion = (struct pound_floor_motion){.stretch = &floor->stretch,
+	                                      .taker = follower->taker,
+	                                      .stop = ask->stop,
+	                                      .pushed = true,
+	                                      .beside = follower->beside};
 	if (ask->chain.task) {
 		// a history is of one contact, spectra are of all
 		const int link = follower->beside ? pound_floor_contact(&ask->chain) : -1;
@@ -275,20 +274,23 @@ static struct follow *follow_begin(struct pound_floor *floor, const struct pound
 	follow->lanes = ask->lanes;
 	follow->scratch = floor->scratch;
 	follow->n = 0;
-	follow->motion = (struct pound_floor_motion){
-	    .task = ask->task, .stretch = &floor->stretch, .taker = {follow_take, follow}, .stop = ask->stop};
+	follow->motion = (struct pound_floor_motion){.task = ask->task,
+	                                             .stretch = &floor->stretch,
+	                                             .taker = {follow_take, follow},
+	                                             .stop = ask->stop,
+	                                             .pushed = ask->n_drives > 1};
 	return follow;
 }
 
 /* Makes pieces of the instants that were kept, and takes the oscillators over them: the stretch is of this floor meanwhile. */
 static void follow_empty(struct follow *follow)
 {
+	follow->motion.stretch->n = follow->motion.stretch->n_maps = 0;
 	for (int i = 0; i < follow->n; i++)
 		pound_floor_observe(&follow->motion, &follow->instants[i]);
 	follow->n = 0;
 	if (!pound_stopped(follow->motion.stop))
 		follow_take(follow);
-	follow->motion.stretch->n = follow->motion.stretch->n_maps = 0;
 }
 
 static void follow_observe(void *of, const struct pound_instant_of_task *instant)

@@ -7,7 +7,7 @@
 #include "engine/floor/floor_pieces.h"
 
 enum {
-	POUND_SEGMENTS = 16,            /* of a piece, at most; a power of two */
+	POUND_SEGMENTS = 16,                          /* of a piece, at most; a power of two */
 	POUND_SEGMENT_DERIVATIVES = POUND_FLOOR_ROOM, /* the 0th to the 23rd */
 };
 

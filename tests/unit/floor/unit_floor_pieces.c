@@ -92,7 +92,8 @@ static void follow(struct followed *f, const struct pound_task *task)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	*f = (struct followed){.task = task};
-	struct pound_floor_motion motion = {.task = task, .stretch = &stretch, .taker = {pieces_take, f}, .pushed = true};
+	struct pound_floor_motion motion = {
+	    .task = task, .stretch = &stretch, .taker = {pieces_take, f}, .pushed = true};
 	const struct pound_task_observer observer = {.observe = pound_floor_observe, .into = &motion};
 	struct pound_task observed = *task;
 	observed.observer = &observer;
