@@ -130,43 +130,18 @@ LANE_INLINE unsigned observers_most(const struct batch *b, unsigned lanes, vd mo
 	return every;
 }
 
-/* Carries a lane out to a sample of a stretch. */
-LANE_INLINE void stretch_carry(struct simulation *sim, const struct stretch *s, int r, int l)
+/* Reports to the observers of lanes the samples of free motion in a stretch. */
+LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead,
+                                 const struct observed_stretch *stretch)
 {
-	for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
-		sim->x.u[i] = ((const double *)&s->at[i][r].u)[l];
-		sim->x.v[i] = ((const double *)&s->at[i][r].v)[l];
-	}
-	sim->unobserved = sim->task->time_step;
-}
-
-/* Reports that n samples of a lane were passed, up to one of a stretch. */
-LANE_INLINE void stretch_pass(struct simulation *sim, const struct stretch *s, int64_t sample, int r, int l,
-                              int n)
-{
-	stretch_carry(sim, s, r, l);
-	double *known = sim->task->observer->most;
-	for (int k = 0; k < 2; k++) {
-		const double now = ((const double *)&s->most[r][k])[l];
-		known[k] = now > known[k] ? now : known[k];
-	}
-	simulation_pass(sim, sample, n);
-}
-
-/* Reports to the observers of lanes the samples of free motion in a stretch.
- *
- * Given    g, maps, scope  of the stretch
- */
-LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead, struct stretch *s,
-                                 const struct lanes *g, const struct free_map maps[2],
-                                 const struct scope *scope)
-{
+	const struct stretch *s = stretch->samples;
 	double samples[W];
 	unsigned exceeds[ROW], any = 0;
-	lanes_store(samples, s->moved);
-	const unsigned every = observers_most(b, ahead->observed, s->most[0]);
+	vd most[ROW + 1][2];
+	lanes_store(samples, stretch->moved);
+	const unsigned every = observers_most(b, ahead->observed, most[0]);
 	for (int r = 0; r < ROW; r++) {
-		exceeds[r] = every | stretch_exceeds(s, g, maps, r, scope);
+		exceeds[r] = every | stretch_exceeds(stretch, r, most[r], most[r + 1]);
 		any |= exceeds[r];
 	}
 	for (unsigned lanes = ahead->observed; lanes;) {
@@ -178,7 +153,8 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
 		for (int r = passed; r <= n; r++) {
 			const bool ends = r == n, looked = !ends && exceeds[r] >> l & 1;
 			if (passed > 0 && (looked || ends)) {
-				stretch_pass(sim, s, before + r, r, l, passed);
+				stretch_carry(sim, s, r, l);
+				stretch_pass(sim, most[r], before + r, l, passed);
 				passed = 0;
 			}
 			if (looked) {
@@ -219,9 +195,9 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 		moved = vselect(vmask(on), moved + one, moved);
 		stretch_keep(g, &s, r + 1, vmask(on), scope);
 	}
-	if (__builtin_expect(ahead->observed, 0)) {
-		s.moved = moved;
-		stretch_observe(b, ahead, &s, g, maps, scope);
+	if (scope->observed) {
+		const struct observed_stretch observed = {&s, g, maps, scope->paired, moved};
+		stretch_observe(b, ahead, &observed);
 	}
 	g->ground = s.ground[ROW];
 	ahead->samples = ahead->samples - moved;
@@ -229,14 +205,12 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 	ahead->moving = on & more;
 }
 
-/* Given    g, maps  what does not change meanwhile */
+/* Given    g, maps  what does not change meanwhile;  observed: a lane has an observer */
 LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
-                            const struct free_map maps[2], enum kind kind)
+                            const struct free_map maps[2], struct scope scope)
 {
-	const struct scope scope = {
-	    .paired = stage == STAGE_FREE_PAIR, .edged = kind == KIND_EDGED, .right = b->traits & TRAIT_RIGHT};
 	struct ahead ahead = {.moving = batch_lanes(b),
-	                      .observed = b->traits & TRAIT_OBSERVED ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
+	                      .observed = scope.observed ? vbits(batch_trait(b, TRAIT_OBSERVED)) : 0};
 	double ground[W], samples[W];
 	lanes_fill(g, b, ROW_STATE);
 	for (int l = 0; l < W; l++) {
@@ -273,7 +247,8 @@ LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound
 	}
 }
 
-LANE_INLINE void free_run(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
+LANE_INLINE void free_lanes(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind,
+                            bool observed)
 {
 	const bool common = kind == KIND_COMMON;
 	const struct state_rows *shared = common ? &work->common.x : NULL;
@@ -287,8 +262,30 @@ LANE_INLINE void free_run(struct work *work, struct batch *b, enum pound_stage s
 		maps[1] = free_map_of(&g, 1);
 	}
 	do
-		free_batch(work, b, stage, &g, maps, kind);
+		free_batch(work, b, stage, &g, maps,
+		           (struct scope){.paired = stage == STAGE_FREE_PAIR,
+		                          .edged = kind == KIND_EDGED,
+		                          .right = b->traits & TRAIT_RIGHT,
+		                          .observed = observed});
 	while (common && batch_again(work, b));
+}
+
+/* Of what is observed all is in memory that others know of: code of its own, so that other lanes keep theirs in registers. */
+LANE_SHARED void free_single_observed(struct work *work, struct batch *b)
+{
+	free_lanes(work, b, STAGE_FREE_SINGLE, KIND_EDGED, true);
+}
+LANE_SHARED void free_pair_observed(struct work *work, struct batch *b)
+{
+	free_lanes(work, b, STAGE_FREE_PAIR, KIND_EDGED, true);
+}
+
+LANE_INLINE void free_run(struct work *work, struct batch *b, enum pound_stage stage, enum kind kind)
+{
+	if (__builtin_expect(b->traits & TRAIT_OBSERVED, 0))
+		(stage == STAGE_FREE_PAIR ? free_pair_observed : free_single_observed)(work, b);
+	else
+		free_lanes(work, b, stage, kind, false);
 }
 
 /* ---- whole substeps of contact ---- */

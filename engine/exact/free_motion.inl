@@ -205,8 +205,15 @@ struct stretch {
 	unsigned edge[ROW];    /* lanes in which an edge of a branch may be reached inside a sample */
 	unsigned meet[ROW];    /* in which bodies may touch */
 	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
-	vd moved;              /* samples up to the end or the first event */
-	vd most[ROW + 1][2];   /* of observed lanes: u_1 - u_2 and u_2 - u_1 at most at the samples up to there */
+};
+
+/* A stretch some lanes of which are observed. */
+struct observed_stretch {
+	const struct stretch *samples;
+	const struct lanes *lanes;
+	const struct free_map *maps; /* (2) */
+	bool paired;
+	vd moved; /* samples up to the end or the first event */
 };
 
 /* Moves every lane over a sample of a stretch. */
@@ -275,22 +282,25 @@ LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const str
 }
 
 /* Lanes in which the bodies' displacement against each other may be larger inside a sample of a stretch than at any sample up to
- * its end, where it is taken into the most. */
-LANE_INLINE unsigned stretch_exceeds(struct stretch *s, const struct lanes *g, const struct free_map maps[2],
-                                     int r, const struct scope *scope)
+ * its end.
+ *
+ * Given    most   u_1 - u_2 and u_2 - u_1 at most at the samples up to its start  (2)
+ * Returns  reach  up to its end  (2)
+ */
+LANE_INLINE unsigned stretch_exceeds(const struct observed_stretch *o, int r, const vd most[2], vd reach[2])
 {
-	vd *most = s->most[r + 1];
-	vd third = g->body[0].step_gap * vsplat(1.0 / 3);
+	const struct stretch *s = o->samples;
+	vd third = o->lanes->body[0].step_gap * vsplat(1.0 / 3);
 	vd forcing = vabs(s->ground[r]) + vabs(s->ground[r + 1] - s->ground[r]);
-	const struct cubic left = cubic_of(&maps[0], s->at[0][r], s->at[0][r + 1], forcing, third);
+	const struct cubic left = cubic_of(&o->maps[0], s->at[0][r], s->at[0][r + 1], forcing, third);
 	struct cubic right = {vsplat(0), vsplat(0), vsplat(0), vsplat(0), vsplat(0)};
-	if (scope->paired)
-		right = cubic_of(&maps[1], s->at[1][r], s->at[1][r + 1], forcing, third);
+	if (o->paired)
+		right = cubic_of(&o->maps[1], s->at[1][r], s->at[1][r + 1], forcing, third);
 	vd b1 = left.b1 - right.b1, b2 = left.b2 - right.b2, error = left.error + right.error,
 	   p = left.u - right.u;
-	most[0] = vmax(s->most[r][0], p);
-	most[1] = vmax(s->most[r][1], -p);
-	return vbits(vless(most[0], vmax(b1, b2) + error) | vless(most[1], error - vmin(b1, b2)));
+	reach[0] = vmax(most[0], p);
+	reach[1] = vmax(most[1], -p);
+	return vbits(vless(reach[0], vmax(b1, b2) + error) | vless(reach[1], error - vmin(b1, b2)));
 }
 
 /* Some lanes arrive at a sample of a stretch. */

@@ -77,3 +77,29 @@ LANE_SHARED void simulation_pass(struct simulation *sim, int64_t sample, int n)
 	simulation_instant(sim, sample, &now);
 	observer->pass(observer->into, &now, n);
 }
+
+/* ---- samples of free motion ---- */
+
+/* Carries a lane out to a sample of a stretch. */
+LANE_INLINE void stretch_carry(struct simulation *sim, const struct stretch *s, int r, int l)
+{
+	for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
+		sim->x.u[i] = ((const double *)&s->at[i][r].u)[l];
+		sim->x.v[i] = ((const double *)&s->at[i][r].v)[l];
+	}
+	sim->unobserved = sim->task->time_step;
+}
+
+/* Reports that n samples of a lane were passed, up to one of a stretch.
+ *
+ * Given    most  of all lanes at that sample  (2)
+ */
+LANE_INLINE void stretch_pass(struct simulation *sim, const vd most[2], int64_t sample, int l, int n)
+{
+	double *known = sim->task->observer->most;
+	for (int k = 0; k < 2; k++) {
+		const double now = ((const double *)&most[k])[l];
+		known[k] = now > known[k] ? now : known[k];
+	}
+	simulation_pass(sim, sample, n);
+}

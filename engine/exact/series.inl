@@ -195,34 +195,36 @@ LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure 
  * the cubic through 0 and t over (t - time), and its error fourth_max/24 time^2 (t - time), stay negative before t when the
  * cubic's inner control points are, the second by more than the error: no root lies before t.
  */
-LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active, vd *t)
+LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active, vd *root_time)
 {
 	const struct power *u = g->u;
-	vd sign = g->sign, g0 = g->g0, g1 = g->g1;
+	// in registers: a write through a pointer may change what another points to
+	const vd sign = g->sign, level = g->level, g0 = g->g0, g1 = g->g1, fourth_max = g->fourth_max;
 	vd zero = vsplat(0), d0 = sign * u->c[1], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
 	vd d = d0 * limit, c = g1 - (d + g0);
 	vd root = vsqrt(vmax(vfma(d, d, -4.0 * c * g0), zero));
 	vm up = vless(zero, d0);
-	*t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
+	vd t = limit * vmin(vselect(up, -2.0 * g0, root - d) / vselect(up, d + root, 2.0 * c), vsplat(1));
 	vm converged = vless(zero, zero);
 	for (int round = 0; round < QUICK_ROUNDS && vany(sure & ~converged); round++) {
-		struct kinematics at = kinematics_at(u, order, *t);
-		vd value = sign * (at.u - g->level), curvature = sign * curvature_at(u, order, *t);
+		struct kinematics at = kinematics_at(u, order, t);
+		vd value = sign * (at.u - level), curvature = sign * curvature_at(u, order, t);
 		slope = vselect(converged, slope, sign * at.v);
 		vd fall = vfma(slope, slope, vsplat(-0.5) * value * curvature);
 		vm rises = vless(zero, slope) & vless(zero, fall);
-		vd next = vselect(rises, vmin(vmax(*t - value * slope / fall, zero), limit), limit);
-		vd step = next - *t;
-		*t = vselect(converged, *t, next);
+		vd next = vselect(rises, vmin(vmax(t - value * slope / fall, zero), limit), limit);
+		vd step = next - t;
+		t = vselect(converged, t, next);
 		// the error after a step of s is near s (s curvature/slope)^2, and s^2/slope times what curvature leaves out: 1e-4 of the
 		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
 		vd small = vsplat(0x1p-20);
-		converged |= vless(vabs(step), small * *t) & vless(vabs(step * curvature), small * slope) & rises;
+		converged |= vless(vabs(step), small * t) & vless(vabs(step * curvature), small * slope) & rises;
 	}
+	*root_time = t;
 	// the slope is that before the last step, which changed it by less than 2^-20
-	return sure & converged & ~vless(zero, vfma(d0, *t * vsplat(1.0 / 3), g0)) &
-	       vless(g->fourth_max * (*t * *t * *t) * vsplat(1.01 / 24), slope);
+	return sure & converged & ~vless(zero, vfma(d0, t * vsplat(1.0 / 3), g0)) &
+	       vless(fourth_max * (t * t * t) * vsplat(1.01 / 24), slope);
 }
 
 /* Safe root search: first time at which a guard, negative at 0, becomes positive.
@@ -236,18 +238,17 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
  * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
  * passes none.
  */
-LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, vd *t, vm *unsure)
+LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, vd *root_time, vm *unsure)
 {
 	vd zero = vsplat(0), curved = zero;
 	for (int n = order; n > 2; n--)
 		curved = vfma(vsplat((double)n * (n - 1)), vabs(g->c[n]), curved);
 	vd curvature_max = vmax(zero, vfma(vsplat(2), g->c[2], curved));
 	curved = vfma(vsplat(2), vabs(g->c[2]), curved);
-	vm going = active, found = vless(zero, zero);
-	*unsure = found;
-	*t = vselect(active, zero, *t);
+	vm going = active, found = vless(zero, zero), given_up = found;
+	vd t = vselect(active, zero, *root_time);
 	for (int round = 0; round < ROOT_ROUNDS && vany(going); round++) {
-		struct kinematics at = kinematics_at(g, order, *t);
+		struct kinematics at = kinematics_at(g, order, t);
 		vd slope = at.v, below = vmin(at.u, zero);
 		vd root = vsqrt(vfma(slope, slope, -2.0 * curvature_max * below));
 		vm rises = vless(zero, slope);
@@ -255,13 +256,14 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 		step = vselect(rises | vless(zero, curvature_max), step, vsplat(2));
 		vm near = vless(step * step * curved, vsplat(0.5 * DBL_EPSILON) * slope);
 		vm stuck = vless(step, vsplat(0.5 * DBL_EPSILON)) & ~near;
-		*t = vselect(going & ~stuck, *t + step, *t);
-		*unsure |= going & stuck;
-		going &= ~vless(limit, *t) & ~stuck;
+		t = vselect(going & ~stuck, t + step, t);
+		given_up |= going & stuck;
+		going &= ~vless(limit, t) & ~stuck;
 		found |= going & near;
 		going &= ~near;
 	}
-	*unsure |= going;
+	*root_time = t;
+	*unsure = given_up | going;
 	return found;
 }
 

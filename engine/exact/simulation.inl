@@ -184,7 +184,8 @@ struct scope {
 	bool forced;   /* a lane's contact ends when its force does */
 	bool
 	    seldom; /* a lane's energy is accounted for, it is observed, or nothing presses its bodies on each other */
-	bool common; /* all have the same constants */
+	bool common;   /* all have the same constants */
+	bool observed; /* a lane in free motion has an observer */
 };
 
 /* a task that a simulation is the run of as well */

@@ -40,8 +40,9 @@ struct group {
 	struct state s[POUND_DRIVES];
 };
 
-/* A segment of a piece; all motions below are in its time 0 .. 1. */
+/* One of n equal segments of a piece; all motions below are in its time 0 .. 1. */
 struct segment {
+	int n;
 	double step;          /* [s] */
 	int terms;            /* of a series without a drive, by the fastest of the group */
 	vd damp[G], stiff[G]; /* -2 xi x, -x^2 */
@@ -104,8 +105,10 @@ static int segments_of(double omega_max, double step, double radians)
 	return n;
 }
 
-LANE_INLINE void segment_init(struct segment *p, const struct group *g, double step)
+LANE_INLINE void segment_init(struct segment *p, const struct group *g, double length, int n)
 {
+	const double step = length / n;
+	p->n = n;
 	p->step = step;
 	p->terms = terms_of(g->omega_max * step);
 	for (int i = 0; i < G; i++) {
@@ -130,15 +133,16 @@ static void coefficients_of_segment(const double *a, int order, int j, int n, do
 		room[k] *= power;
 }
 
-/* The force of a drive in segment j of n, each of length step.
+/* The force of a drive in segment j of a piece.
  *
  * Given    c  coefficients over the whole piece  (order + 1, with room for DERIVATIVES)
  */
 LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powers *powers, const double *c,
-                            int order, int j, int n, double step)
+                            int order, const struct segment *p, int j)
 {
 	double room[POUND_FLOOR_ROOM];
-	const vd scale = vsplat(-(step * step));
+	const vd scale = vsplat(-(p->step * p->step));
+	int n = p->n;
 	if (n > SEGMENTS_MAX) {
 		coefficients_of_segment(c, order, j, n, room);
 		c = room, n = 1, j = 0;
@@ -208,7 +212,6 @@ struct stage {
 	const struct group *group;
 	int i;               /* of the vector */
 	const double *bound; /* A, A', A'' over the piece */
-	int n;               /* segments of the piece */
 	vd z, v, z1, v1;     /* at the start and at the end */
 };
 
@@ -269,7 +272,7 @@ LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force,
 LANE_INLINE vm risk_of_segment(const struct stage *stage, vd top)
 {
 	const struct segment *p = stage->segment;
-	const double step = p->step, scale = step * step, share = 1.0 / stage->n, third = step * (1.0 / 3);
+	const double step = p->step, scale = step * step, share = 1.0 / p->n, third = step * (1.0 / 3);
 	const vd x = stage->group->omega[stage->i] * step, damp = -p->damp[stage->i], x2 = x * x;
 	const vd a = vsplat(scale * stage->bound[0]), a1 = vsplat(scale * share * stage->bound[1]);
 	const vd a2 = vsplat(scale * share * share * stage->bound[2]);
@@ -299,10 +302,10 @@ LANE_INLINE bool risk_of_piece(const struct group *g, const struct state *s, dou
 	return any;
 }
 
-/* A group over any piece, driven by one of the drives: n segments p, one after the other. */
+/* A group over any piece, driven by one of the drives: its segments p, one after the other. */
 LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_bank_input *input,
                             const struct pound_floor_piece *piece, enum pound_drive drive, struct group *g,
-                            const struct segment *p, int n)
+                            const struct segment *p)
 {
 	const struct pound_polynomial *own = drive == POUND_DRIVE_PUSH ? &piece->push : &piece->floor;
 	struct state *s = &g->s[drive];
@@ -313,14 +316,14 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	const int order = pound_floor_drive(input->stretch, piece, drive, input->damping, room, &c);
 	const bool any = risk_of_piece(g, s, piece->step, own->bound[0], risk);
 	const double per_step = 1 / p->step;
-	for (int j = 0; j < n; j++) {
+	for (int j = 0; j < p->n; j++) {
 		vd z[G], y[G];
-		force_fill(&force, bank->powers, c, order, j, n, p->step);
+		force_fill(&force, bank->powers, c, order, p, j);
 		for (int i = 0; i < G; i++)
 			z[i] = s->z[i], y[i] = s->v[i] * p->step;
 		series_pass(p, &force, z, y);
 		for (int i = 0; i < G; i++) {
-			struct stage stage = {p, g, i, own->bound, n, s->z[i], s->v[i], z[i], y[i] * per_step};
+			struct stage stage = {p, g, i, own->bound, s->z[i], s->v[i], z[i], y[i] * per_step};
 			if (any && vany(risk[i])) {
 				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
 				const vm inside = risk_of_segment(&stage, s->top[i]) & risk[i];
@@ -362,7 +365,7 @@ LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd t
 
 /* What the floor of a stiffness does to oscillators over the segments of a sample, and over all of them. */
 static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *bank,
-                           const struct pound_bank_input *input, const struct segment *p, int segments)
+                           const struct pound_bank_input *input, const struct segment *p)
 {
 	const int order = input->stretch->order;
 	struct force force;
@@ -374,10 +377,10 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 			end_z[i] = end_v[i] = vsplat(0);
 		pound_floor_free_motion(unit, input->stretch->stiffness[m], input->damping, input->time_step, order,
 		                        a);
-		for (int j = 0; j < segments; j++) {
+		for (int j = 0; j < p->n; j++) {
 			struct drive_map *map = &maps->of_segment[m][j];
 			vd *z = map->z[state], *v = map->v[state];
-			force_fill(&force, bank->powers, a, order, j, segments, p->step);
+			force_fill(&force, bank->powers, a, order, p, j);
 			for (int i = 0; i < G; i++)
 				z[i] = v[i] = vsplat(0);
 			series_pass(p, &force, z, v);
@@ -393,18 +396,18 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 
 /* All maps of a sample, of every stiffness of a stretch. */
 static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct group *g,
-                      const struct pound_bank_input *input, const struct segment *p, int segments)
+                      const struct pound_bank_input *input, const struct segment *p)
 {
 	const double h = input->time_step;
 	passage_fill(&maps->segment, p);
 	maps->sample = maps->segment;
-	for (int j = 1; j < segments; j++)
+	for (int j = 1; j < p->n; j++)
 		for (int i = 0; i < G; i++) {
 			passage_take(&maps->segment, i, &maps->sample.zz[i], &maps->sample.vz[i], vsplat(0), vsplat(0));
 			passage_take(&maps->segment, i, &maps->sample.zv[i], &maps->sample.vv[i], vsplat(0), vsplat(0));
 		}
 	for (int m = 0; m < input->stretch->n_maps; m++)
-		drive_map_fill(maps, m, bank, input, p, segments);
+		drive_map_fill(maps, m, bank, input, p);
 	for (int i = 0; i < G; i++) {
 		const vd zero = vsplat(0), per = g->per_omega[i], per2 = per * per;
 		const vm fast = vless(vsplat(1), g->omega[i] * h);
@@ -442,7 +445,7 @@ struct sample_place {
 	const struct maps *maps;
 	const struct group *group;
 	const struct segment *whole, *segment;
-	int segments, i;
+	int i;
 };
 
 /* The largest |z| of a sample in the lanes of risk, else top: the cubic through the ends of the sample proves it of slow
@@ -460,13 +463,13 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 	const double *c;
 	struct force force;
 	const double *bound = driven ? at->piece->floor.bound : none.bound;
-	const struct stage whole = {at->whole, at->group, i, bound, 1, s->z[i], s->v[i], z1, v1};
-	struct stage stage = {at->segment, at->group, i, bound, at->segments, s->z[i], s->v[i], s->z[i], s->v[i]};
+	const struct stage whole = {at->whole, at->group, i, bound, s->z[i], s->v[i], z1, v1};
+	struct stage stage = {at->segment, at->group, i, bound, s->z[i], s->v[i], s->z[i], s->v[i]};
 	vd top = vselect(risk, vmax(s->top[i], vabs(z1)), s->top[i]);
 	risk = risk & risk_of_segment(&whole, top);
 	if (!vany(risk))
 		return top;
-	for (int j = 0; j < at->segments; j++) {
+	for (int j = 0; j < at->segment->n; j++) {
 		const struct drive_map *map = &at->maps->of_segment[at->piece->map][j];
 		vd z = vsplat(0), v = vsplat(0);
 		stage.z = stage.z1, stage.v = stage.v1;
@@ -480,7 +483,7 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 		if (vany(inside)) {
 			const int order =
 			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
-			force_fill(&force, at->bank->powers, c, order, j, at->segments, at->segment->step);
+			force_fill(&force, at->bank->powers, c, order, at->segment, j);
 			top = segment_top(&stage, &force, inside, top);
 		}
 	}
@@ -552,27 +555,25 @@ static void group_move(const struct pound_bank *bank, const struct pound_bank_in
 	group_load(&g, bank, at);
 	const int segments = segments_of(g.omega_max, input->time_step, bank->radians);
 	const bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
-	segment_init(&whole, &g, input->time_step);
-	segment_init(&of_sample, &g, input->time_step / segments);
+	segment_init(&whole, &g, input->time_step, 1);
+	segment_init(&of_sample, &g, input->time_step, segments);
 	if (mapped)
-		maps_fill(&scratch->maps, bank, &g, input, &of_sample, segments);
+		maps_fill(&scratch->maps, bank, &g, input, &of_sample);
 	for (int k = 0; k < input->stretch->n; k++) {
 		const struct pound_floor_piece *piece = &input->stretch->piece[k];
 		for (int d = 0; d < bank->n_drives && piece->jump != 0; d++)
 			for (int i = 0; i < G; i++)
 				g.s[d].v[i] = g.s[d].v[i] - vsplat(piece->jump);
 		if (piece->map >= 0 && mapped) {
-			struct sample_place place = {bank,       input,    piece, &scratch->maps, &g, &whole,
-			                             &of_sample, segments, 0};
+			struct sample_place place = {bank, input, piece, &scratch->maps, &g, &whole, &of_sample, 0};
 			sample_move(&place, POUND_DRIVE_FLOOR, &g);
 			if (bank->n_drives > 1)
 				sample_move(&place, POUND_DRIVE_PUSH, &g);
 			continue;
 		}
-		const int n = segments_of(g.omega_max, piece->step, bank->radians);
-		segment_init(&p, &g, piece->step / n);
+		segment_init(&p, &g, piece->step, segments_of(g.omega_max, piece->step, bank->radians));
 		for (int d = 0; d < bank->n_drives; d++)
-			piece_move(bank, input, piece, d, &g, &p, n);
+			piece_move(bank, input, piece, d, &g, &p);
 	}
 	group_store(&g, bank, at);
 }
