@@ -19,7 +19,8 @@ enum {
 /* what drives an oscillator: the floor's absolute acceleration, or the part of it that the contact gives */
 enum pound_drive { POUND_DRIVE_FLOOR, POUND_DRIVE_PUSH, POUND_DRIVES };
 
-/* Coefficients of powers of time over the piece's step, and bounds of |a|, |a'|, |a''| in that time  [m/s2] */
+/* Coefficients of powers of time over the piece's step, and bounds of |a|, |a'|, |a''| in that time  [m/s2].  The last are below
+ * 1e-6 of the bound, or roundings of the velocity: what they do to an oscillator ends in rounding within POUND_FLOOR_TERMS. */
 struct pound_polynomial {
 	double bound[3];
 	double c[POUND_FLOOR_ROOM]; /* (order + 1) */

@@ -44,17 +44,25 @@ struct group {
 struct segment {
 	int n;
 	double step;          /* [s] */
+	double x;             /* of the fastest of the group */
 	int terms;            /* of a series without a drive, by the fastest of the group */
 	vd damp[G], stiff[G]; /* -2 xi x, -x^2 */
+};
+
+/* What drives oscillators over a piece: coefficients of powers of its own time  (order + 1, with room for DERIVATIVES) */
+struct drive {
+	const double *c;
+	int order; /* -1: none */
+	int terms; /* of a series that it drives, at most */
 };
 
 /* Derivatives of a drive where a segment begins, times -step^2; those beyond its order are 0. */
 struct force {
 	alignas(64) double of[DERIVATIVES];
-	int order; /* -1: none */
+	int terms; /* of a series that it drives */
 };
 
-/* What a time does to a state without a drive: z' = zz z + zv v, v' = vz z + vv v. */
+/* What a time adds to a state without a drive: z grows by zz z + zv v, v by vz z + vv v. */
 struct passage {
 	vd zz[G], zv[G], vz[G], vv[G];
 };
@@ -110,7 +118,8 @@ LANE_INLINE void segment_init(struct segment *p, const struct group *g, double l
 	const double step = length / n;
 	p->n = n;
 	p->step = step;
-	p->terms = terms_of(g->omega_max * step);
+	p->x = g->omega_max * step;
+	p->terms = terms_of(p->x);
 	for (int i = 0; i < G; i++) {
 		const vd x = g->omega[i] * step;
 		p->damp[i] = x * (-2 * g->damping);
@@ -133,13 +142,30 @@ static void coefficients_of_segment(const double *a, int order, int j, int n, do
 		room[k] *= power;
 }
 
-/* The force of a drive in segment j of a piece.
+/* A drive over segments p of a piece.
  *
- * Given    c  coefficients over the whole piece  (order + 1, with room for DERIVATIVES)
+ * Given    c      its coefficients  (order + 1)
+ *          bound  of its magnitude
+ *
+ * Term n of a series is of the last coefficient's making, times x/n for every one behind the (order + 2)nd.
  */
-LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powers *powers, const double *c,
-                            int order, const struct segment *p, int j)
+LANE_INLINE struct drive drive_of(const double *c, int order, const struct segment *p, double bound)
 {
+	struct drive drive = {.c = c, .order = order, .terms = larger(p->terms, order + 2)};
+	double last = order < 0 ? 0 : fabs(c[order]);
+	for (int n = order + 3; n <= TERMS && last > 0x1p-54 * bound; n++) {
+		last *= p->x * POUND_SHARE[n - 1];
+		drive.terms = larger(drive.terms, n);
+	}
+	return drive;
+}
+
+/* The force of a drive in segment j of a piece. */
+LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powers *powers,
+                            const struct drive *drive, const struct segment *p, int j)
+{
+	const double *c = drive->c;
+	const int order = drive->order;
 	double room[POUND_FLOOR_ROOM];
 	const vd scale = vsplat(-(p->step * p->step));
 	int n = p->n;
@@ -147,7 +173,7 @@ LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powe
 		coefficients_of_segment(c, order, j, n, room);
 		c = room, n = 1, j = 0;
 	}
-	force->order = order;
+	force->terms = drive->terms;
 	// where a piece begins every power has one derivative
 	for (int m = 0; m < DERIVATIVES && j == 0; m += W) {
 		const vm kept = vless(lanes_load(&powers->number[m]), vsplat(order + 1));
@@ -164,22 +190,24 @@ LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powe
 
 /* ---- series ---- */
 
-/* Takes a group over a segment.
+/* What a segment adds to a group: roundings of an increment do not add up over thousands of samples as those of a factor near 1
+ * would.
  *
  * Given    z, y  at the start
- * Returns  z, y  at the end
+ * Returns  z, y  by how much they grow
  *
- * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     z = sum d_n/n!, y = sum d_n+1/n!
+ * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     z grows by sum d_n/n!, y by sum d_n+1/n!, n > 0
  */
 LANE_INLINE void series_pass(const struct segment *p, const struct force *force, vd z[G], vd y[G])
 {
-	const int terms = larger(p->terms, force->order + 2);
+	const int terms = force->terms;
 	vd now[G], next[G];
 	for (int i = 0; i < G; i++) {
-		now[i] = z[i], next[i] = y[i];
+		now[i] = y[i];
+		next[i] = vfma(p->damp[i], y[i], vfma(p->stiff[i], z[i], vsplat(force->of[0])));
 		z[i] = y[i] = vsplat(0);
 	}
-	for (int n = 0; n <= terms; n++) {
+	for (int n = 1; n <= terms; n++) {
 		const vd factor = vsplat(POUND_FACTOR[n]), f = vsplat(force->of[n]);
 		for (int i = 0; i < G; i++) {
 			z[i] = vfma(now[i], factor, z[i]);
@@ -238,7 +266,7 @@ LANE_INLINE vd polished(const struct series *s, vd t)
 LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force, vm risk, vd top)
 {
 	const struct segment *p = stage->segment;
-	struct series s = {.terms = larger(p->terms, force->order + 2)};
+	struct series s = {.terms = force->terms};
 	vd zero = vsplat(0), one = vsplat(1), now = stage->z, next = stage->v * p->step;
 	for (int n = 0; n <= s.terms; n++) {
 		const vd after = vfma(p->damp[stage->i], next, vfma(p->stiff[stage->i], now, vsplat(force->of[n])));
@@ -314,16 +342,18 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	const double *c;
 	vm risk[G];
 	const int order = pound_floor_drive(input->stretch, piece, drive, input->damping, room, &c);
+	const struct drive made = drive_of(c, order, p, own->bound[0]);
 	const bool any = risk_of_piece(g, s, piece->step, own->bound[0], risk);
 	const double per_step = 1 / p->step;
 	for (int j = 0; j < p->n; j++) {
 		vd z[G], y[G];
-		force_fill(&force, bank->powers, c, order, p, j);
+		force_fill(&force, bank->powers, &made, p, j);
 		for (int i = 0; i < G; i++)
 			z[i] = s->z[i], y[i] = s->v[i] * p->step;
 		series_pass(p, &force, z, y);
 		for (int i = 0; i < G; i++) {
-			struct stage stage = {p, g, i, own->bound, s->z[i], s->v[i], z[i], y[i] * per_step};
+			struct stage stage = {
+			    p, g, i, own->bound, s->z[i], s->v[i], s->z[i] + z[i], vfma(y[i], vsplat(per_step), s->v[i])};
 			if (any && vany(risk[i])) {
 				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
 				const vm inside = risk_of_segment(&stage, s->top[i]) & risk[i];
@@ -341,7 +371,7 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 /* What a segment does to oscillators without a drive. */
 static void passage_fill(struct passage *passage, const struct segment *p)
 {
-	const struct force none = {.order = -1};
+	const struct force none = {.terms = p->terms};
 	const double per_step = 1 / p->step;
 	for (int state = 0; state < 2; state++) {
 		vd z[G], y[G];
@@ -355,12 +385,23 @@ static void passage_fill(struct passage *passage, const struct segment *p)
 	}
 }
 
-LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd to_z, vd to_v)
+/* Moves a state, to which a drive adds more_z and more_v. */
+LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd more_z, vd more_v)
 {
-	to_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, to_z));
-	to_v = vfma(m->vz[i], *z, vfma(m->vv[i], *v, to_v));
-	*z = to_z;
-	*v = to_v;
+	more_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, more_z));
+	more_v = vfma(m->vz[i], *z, vfma(m->vv[i], *v, more_v));
+	*z = *z + more_z;
+	*v = *v + more_v;
+}
+
+/* Appends a segment to a passage: what a displacement and a velocity of 1 have grown by. */
+LANE_INLINE void passage_append(struct passage *all, const struct passage *m, int i)
+{
+	const vd z = 1.0 + all->zz[i], v = 1.0 + all->vv[i];
+	const vd zz = vfma(m->zz[i], z, m->zv[i] * all->vz[i]), vz = vfma(m->vz[i], z, m->vv[i] * all->vz[i]);
+	const vd zv = vfma(m->zv[i], v, m->zz[i] * all->zv[i]), vv = vfma(m->vv[i], v, m->vz[i] * all->zv[i]);
+	all->zz[i] = all->zz[i] + zz, all->vz[i] = all->vz[i] + vz;
+	all->zv[i] = all->zv[i] + zv, all->vv[i] = all->vv[i] + vv;
 }
 
 /* What the floor of a stiffness does to oscillators over the segments of a sample, and over all of them. */
@@ -377,10 +418,14 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 			end_z[i] = end_v[i] = vsplat(0);
 		pound_floor_free_motion(unit, input->stretch->stiffness[m], input->damping, input->time_step, order,
 		                        a);
+		double size = 0;
+		for (int k = 0; k <= order; k++)
+			size += fabs(a[k]);
+		const struct drive drive = drive_of(a, order, p, size);
 		for (int j = 0; j < p->n; j++) {
 			struct drive_map *map = &maps->of_segment[m][j];
 			vd *z = map->z[state], *v = map->v[state];
-			force_fill(&force, bank->powers, a, order, p, j);
+			force_fill(&force, bank->powers, &drive, p, j);
 			for (int i = 0; i < G; i++)
 				z[i] = v[i] = vsplat(0);
 			series_pass(p, &force, z, v);
@@ -402,10 +447,8 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 	passage_fill(&maps->segment, p);
 	maps->sample = maps->segment;
 	for (int j = 1; j < p->n; j++)
-		for (int i = 0; i < G; i++) {
-			passage_take(&maps->segment, i, &maps->sample.zz[i], &maps->sample.vz[i], vsplat(0), vsplat(0));
-			passage_take(&maps->segment, i, &maps->sample.zv[i], &maps->sample.vv[i], vsplat(0), vsplat(0));
-		}
+		for (int i = 0; i < G; i++)
+			passage_append(&maps->sample, &maps->segment, i);
 	for (int m = 0; m < input->stretch->n_maps; m++)
 		drive_map_fill(maps, m, bank, input, p);
 	for (int i = 0; i < G; i++) {
@@ -483,7 +526,8 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 		if (vany(inside)) {
 			const int order =
 			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
-			force_fill(&force, at->bank->powers, c, order, at->segment, j);
+			const struct drive made = drive_of(c, order, at->segment, bound[0]);
+			force_fill(&force, at->bank->powers, &made, at->segment, j);
 			top = segment_top(&stage, &force, inside, top);
 		}
 	}

@@ -178,8 +178,52 @@ static void shorter_steps_change_nothing(void **state)
 	}
 }
 
+/* A slow oscillator takes the steps of the fastest of its group, and rounds no more for that. */
+static void a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group(void **state)
+{
+	(void)state;
+	double top[2];
+	for (int fast = 0; fast < 2; fast++) {
+		double w[OSCILLATORS];
+		for (int k = 0; k < OSCILLATORS; k++)
+			w[k] = k && fast ? 1200 : 3;
+		struct pound_bank bank = bank_of(w, OSCILLATORS, 0.05);
+		for (int beat = 0; beat < 10; beat++) {
+			half_sine(0.6, 60, 0.4);
+			move(&bank);
+		}
+		top[fast] = bank.top[0][0];
+	}
+	check_near(top[1] / top[0], 1, 2e-14);
+}
+
+/* A constant and a power of time whose coefficient has not died away: its series goes on behind that. */
+static void a_piece_whose_last_coefficient_is_no_rounding_is_followed_to_rounding(void **state)
+{
+	(void)state;
+	const double w = 1.4, last = 1e-6;
+	struct pound_bank bank = bank_of(&w, 1, 0);
+	stretch.n = 0;
+	struct pound_floor_piece *piece = piece_next(1, 15);
+	piece->floor.c[0] = 1;
+	piece->floor.c[15] = last;
+	polynomial_bound(&piece->floor, 15);
+	move(&bank);
+	double z = -(1 - cos(w)) / (w * w), term = -last; // - sum (-w^2)^k 15!/(17 + 2 k)!
+	for (int n = 16; n < 60; n++) {
+		term /= n;
+		if (n % 2) {
+			z += term;
+			term *= -w * w;
+		}
+	}
+	check_near(bank.z[0][0] / z, 1, 1e-15);
+}
+
 CHECK_MAIN(cmocka_unit_test(a_half_sine_gives_the_known_shock_spectrum),
            cmocka_unit_test(a_train_of_velocity_steps_gives_the_exact_values),
            cmocka_unit_test(a_step_of_acceleration_overshoots_as_it_must),
            cmocka_unit_test(the_contact_s_part_drives_its_own_oscillators),
-           cmocka_unit_test(shorter_steps_change_nothing))
+           cmocka_unit_test(shorter_steps_change_nothing),
+           cmocka_unit_test(a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group),
+           cmocka_unit_test(a_piece_whose_last_coefficient_is_no_rounding_is_followed_to_rounding))
