@@ -37,6 +37,7 @@ struct state {
 struct group {
 	vd omega[G], per_omega[G];
 	double omega_max, damping;
+	bool slow; /* the fastest turns by a radian at most in a sample */
 	struct state s[POUND_DRIVES];
 };
 
@@ -72,12 +73,19 @@ struct drive_map {
 	vd z[4][G], v[4][G];
 };
 
+/* How much the cubic through the ends of a segment may miss by, over |z| and |v| at its start and the bounds A, A', A'' of the
+ * drive over the piece. */
+struct cubic_error {
+	vd on_z, on_v, on_bound[3];
+};
+
 /* Maps of a whole sample and of its segments, and how far an oscillator may go within the sample: see risk_of_sample. */
 struct maps {
 	struct passage sample, segment;
 	struct drive_map of_sample[POUND_FLOOR_MAPS], of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
 	vd on_start[G], on_rate[G]; /* of a and its rate at the start of the sample */
 	vd on_bound[3][G];          /* of A, A', A'' */
+	struct cubic_error whole[G];
 };
 
 struct scratch {
@@ -291,24 +299,30 @@ LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force,
 	return vselect(risk, vmax(top, most), top);
 }
 
-/* Lanes in which |z| may have a new largest value inside a segment, by the cubic through its ends; top has that at the end.
- *
- * With e = x |z0| + h |v0| + A, h the segment's length and A, A', A'' bounds of the drive times h^2, in the segment's time:
+/* With e = x |z0| + h |v0| + A, h the segment's length and A, A', A'' bounds of the drive times h^2, in the segment's time:
  * x |z| <= e and |z'| <= e inside, so
  *   |z''| <= A + (2 xi + 1) x e,   |z'''| <= A' + 2 xi x |z''| + x^2 e,   |z''''| <= A'' + 2 xi x |z'''| + x^2 |z''|
  */
-LANE_INLINE vm risk_of_segment(const struct stage *stage, vd top)
+LANE_INLINE struct cubic_error cubic_error_of(const struct segment *p, const struct group *g, int i)
 {
-	const struct segment *p = stage->segment;
-	const double step = p->step, scale = step * step, share = 1.0 / p->n, third = step * (1.0 / 3);
-	const vd x = stage->group->omega[stage->i] * step, damp = -p->damp[stage->i], x2 = x * x;
-	const vd a = vsplat(scale * stage->bound[0]), a1 = vsplat(scale * share * stage->bound[1]);
-	const vd a2 = vsplat(scale * share * share * stage->bound[2]);
-	const vd e = vfma(x, vabs(stage->z), vfma(vabs(stage->v), vsplat(step), a));
-	const vd second = vfma(damp + x, e, a);
-	const vd fourth = vfma(damp, vfma(damp, second, vfma(x2, e, a1)), vfma(x2, second, a2));
-	const vd b1 = vfma(vsplat(third), stage->v, stage->z), b2 = vfma(vsplat(-third), stage->v1, stage->z1);
-	return vless(top, vfma(fourth, vsplat(POUND_CUBIC_ERROR), vmax(vabs(b1), vabs(b2))));
+	const double step = p->step, scale = POUND_CUBIC_ERROR * step * step, share = 1.0 / p->n;
+	const vd x = g->omega[i] * step, damp = -p->damp[i], x2 = x * x, both = vfma(damp, damp, x2);
+	const vd on_e = vfma(both, x, damp * x2) + damp * both;
+	return (struct cubic_error){
+	    .on_z = on_e * x * POUND_CUBIC_ERROR,
+	    .on_v = on_e * (step * POUND_CUBIC_ERROR),
+	    .on_bound = {(on_e + both) * scale, damp * (scale * share), vsplat(scale * share * share)}};
+}
+
+/* Lanes in which |z| may have a new largest value inside a segment, by the cubic through its ends; top has that at the end. */
+LANE_INLINE vm risk_of_segment(const struct stage *stage, const struct cubic_error *miss, vd top)
+{
+	const vd third = vsplat(stage->segment->step * (1.0 / 3));
+	vd error = vfma(miss->on_z, vabs(stage->z), miss->on_v * vabs(stage->v));
+	for (int k = 0; k < 3; k++)
+		error = vfma(miss->on_bound[k], vsplat(stage->bound[k]), error);
+	const vd b1 = vfma(third, stage->v, stage->z), b2 = vfma(-third, stage->v1, stage->z1);
+	return vless(top, error + vmax(vabs(b1), vabs(b2)));
 }
 
 /* ---- any piece ---- */
@@ -356,7 +370,8 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 			    p, g, i, own->bound, s->z[i], s->v[i], s->z[i] + z[i], vfma(y[i], vsplat(per_step), s->v[i])};
 			if (any && vany(risk[i])) {
 				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
-				const vm inside = risk_of_segment(&stage, s->top[i]) & risk[i];
+				const struct cubic_error miss = cubic_error_of(p, g, i);
+				const vm inside = risk_of_segment(&stage, &miss, s->top[i]) & risk[i];
 				if (vany(inside))
 					s->top[i] = segment_top(&stage, &force, inside, s->top[i]);
 			}
@@ -451,6 +466,8 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 			passage_append(&maps->sample, &maps->segment, i);
 	for (int m = 0; m < input->stretch->n_maps; m++)
 		drive_map_fill(maps, m, bank, input, p);
+	struct segment whole;
+	segment_init(&whole, g, h, 1);
 	for (int i = 0; i < G; i++) {
 		const vd zero = vsplat(0), per = g->per_omega[i], per2 = per * per;
 		const vm fast = vless(vsplat(1), g->omega[i] * h);
@@ -459,6 +476,7 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 		maps->on_bound[0][i] = vselect(fast, per2, per * h);
 		maps->on_bound[1][i] = vselect(fast, per2 * (2 * g->damping), zero);
 		maps->on_bound[2][i] = maps->on_rate[i];
+		maps->whole[i] = cubic_error_of(&whole, g, i);
 	}
 }
 
@@ -480,6 +498,9 @@ LANE_INLINE vm risk_of_sample(const struct maps *m, const struct group *g, const
 	return vless(left * vabs(left), vfma(z, z, v * v));
 }
 
+/* what drives oscillators on a contact in free motion */
+static const struct pound_polynomial none = {{0}, {0}};
+
 /* one vector of a group over a whole sample */
 struct sample_place {
 	const struct pound_bank *bank;
@@ -491,27 +512,17 @@ struct sample_place {
 	int i;
 };
 
-/* The largest |z| of a sample in the lanes of risk, else top: the cubic through the ends of the sample proves it of slow
- * oscillators, those through the ends of its segments of others.
- *
- * Given    z1, v1  at the end
- */
-LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd z1, vd v1)
+/* The largest |z| of a sample, segment by segment, in the lanes of risk; else top. */
+LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd top)
 {
-	static const struct pound_polynomial none = {{0}, {0}};
 	const int i = at->i;
 	const struct state *s = &at->group->s[drive];
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	double room[POUND_FLOOR_ROOM];
-	const double *c;
+	const double *c, *bound = driven ? at->piece->floor.bound : none.bound;
 	struct force force;
-	const double *bound = driven ? at->piece->floor.bound : none.bound;
-	const struct stage whole = {at->whole, at->group, i, bound, s->z[i], s->v[i], z1, v1};
 	struct stage stage = {at->segment, at->group, i, bound, s->z[i], s->v[i], s->z[i], s->v[i]};
-	vd top = vselect(risk, vmax(s->top[i], vabs(z1)), s->top[i]);
-	risk = risk & risk_of_segment(&whole, top);
-	if (!vany(risk))
-		return top;
+	const struct cubic_error miss = cubic_error_of(at->segment, at->group, i);
 	for (int j = 0; j < at->segment->n; j++) {
 		const struct drive_map *map = &at->maps->of_segment[at->piece->map][j];
 		vd z = vsplat(0), v = vsplat(0);
@@ -522,7 +533,7 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 		}
 		passage_take(&at->maps->segment, i, &stage.z1, &stage.v1, z, v);
 		top = vselect(risk, vmax(top, vabs(stage.z1)), top);
-		const vm inside = risk_of_segment(&stage, top) & risk;
+		const vm inside = risk_of_segment(&stage, &miss, top) & risk;
 		if (vany(inside)) {
 			const int order =
 			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
@@ -534,12 +545,16 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 	return top;
 }
 
-/* A group over a whole sample by maps; the floor's drive has them, the contact gives none. */
+/* A group over a whole sample by maps; the floor's drive has them, the contact gives none.
+ *
+ * What proves that there is no new largest displacement: where all are slow, the cubic through the ends of the sample; else what they may
+ * swing to, and if that does not, the cubic.
+ */
 LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, struct group *g)
 {
-	static const struct pound_polynomial none = {{0}, {0}};
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	const struct pound_floor_piece *piece = at->piece;
+	const struct pound_polynomial *a = driven ? &piece->floor : &none;
 	const struct drive_map *map = &at->maps->of_sample[piece->map];
 	struct state *s = &g->s[drive];
 	for (int i = 0; i < G; i++) {
@@ -549,15 +564,19 @@ LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, st
 			z = vfma(map->z[k][i], vsplat(piece->state[k]), z);
 			v = vfma(map->v[k][i], vsplat(piece->state[k]), v);
 		}
-		const vm risk = risk_of_sample(at->maps, g, s, i, driven ? &piece->floor : &none);
-		vd z1 = s->z[i], v1 = s->v[i];
-		passage_take(&at->maps->sample, i, &z1, &v1, z, v);
-		if (__builtin_expect(vany(risk), 0)) {
-			at->i = i;
-			s->top[i] = sample_top(at, drive, risk, z1, v1);
+		struct stage stage = {at->whole, g, i, a->bound, s->z[i], s->v[i], s->z[i], s->v[i]};
+		passage_take(&at->maps->sample, i, &stage.z1, &stage.v1, z, v);
+		vm risk = g->slow ? vmask((1u << W) - 1) : risk_of_sample(at->maps, g, s, i, a);
+		if (g->slow || __builtin_expect(vany(risk), 0)) {
+			s->top[i] = vselect(risk, vmax(s->top[i], vabs(stage.z1)), s->top[i]);
+			risk = risk & risk_of_segment(&stage, &at->maps->whole[i], s->top[i]);
+			if (__builtin_expect(vany(risk), 0)) {
+				at->i = i;
+				s->top[i] = sample_top(at, drive, risk, s->top[i]);
+			}
 		}
-		s->z[i] = z1;
-		s->v[i] = v1;
+		s->z[i] = stage.z1;
+		s->v[i] = stage.v1;
 	}
 }
 
@@ -597,6 +616,7 @@ static void group_move(const struct pound_bank *bank, const struct pound_bank_in
 	struct group g;
 	struct segment whole, of_sample, p;
 	group_load(&g, bank, at);
+	g.slow = g.omega_max * input->time_step <= 1;
 	const int segments = segments_of(g.omega_max, input->time_step, bank->radians);
 	const bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
 	segment_init(&whole, &g, input->time_step, 1);
