@@ -453,7 +453,7 @@ LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum po
 		interval_set(sim, next);
 		if (!seldom || !observed(sim))
 			continue;
-		substeps_unobserved(sim, substeps_gone[l]);
+		sim->unobserved_substeps += substeps_gone[l];
 		if (entered)
 			simulation_observe(sim, next - 1);
 	}

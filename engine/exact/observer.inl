@@ -3,9 +3,7 @@
  * Steps, substeps and free motion that end elsewhere are not reported: between two instants the motion is one linear system, and who
  * observes it may cut it as needed.
  *
- * Included by exact.inl alone, once per lane count.
- *
- * Included by exact.inl after step.inl. */
+ * Included by exact.inl after step.inl, once per lane count. */
 
 /* Few are. */
 LANE_INLINE bool observed(const struct simulation *sim)
@@ -13,20 +11,11 @@ LANE_INLINE bool observed(const struct simulation *sim)
 	return __builtin_expect(sim->traits & TRAIT_OBSERVED, 0);
 }
 
-/* Time since the last instant [s].  Substeps are counted: how many go by at once is for the scheduler to say. */
+/* Time since the last instant [s].  Substeps, which are equal throughout a task, are counted: how many go by at once is for the
+ * scheduler to say. */
 LANE_INLINE double time_unobserved(const struct simulation *sim)
 {
-	return sim->unobserved + sim->unobserved_substeps * sim->unobserved_substep;
-}
-
-LANE_INLINE void substeps_unobserved(struct simulation *sim, double n)
-{
-	if (sim->unobserved_substep != sim->x.substep) {
-		sim->unobserved = time_unobserved(sim);
-		sim->unobserved_substeps = 0;
-		sim->unobserved_substep = sim->x.substep;
-	}
-	sim->unobserved_substeps += n;
+	return sim->unobserved + sim->unobserved_substeps * sim->x.substep;
 }
 
 /* The instant at which a simulation is.

@@ -221,9 +221,8 @@ struct simulation {
 	const struct pound_task *task;
 	struct pound_task_result *result;
 	struct pound_counts_scale counts_scale;
-	double
-	    unobserved; /* time since the last instant that its observer got, but for some substeps of one length [s] */
-	double unobserved_substeps, unobserved_substep; /* how many, and their length [s] */
+	double unobserved; /* time since the last instant that its observer got, but for some substeps [s] */
+	double unobserved_substeps; /* how many */
 	struct pound_member others[POUND_OTHERS];
 	int n_others;
 	enum pound_stage stage; /* what it does next, while it waits for room */

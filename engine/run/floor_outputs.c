@@ -123,6 +123,7 @@ static void together_add(struct together *t, struct pound_ordinates *o, struct p
 {
 	ask.task = pounding ? request->pounding : request->free;
 	ask.chain = pounding ? request->row.pounding : request->row.free;
+	ask.n_drives = pounding ? ask.n_drives : 1; // without a contact nothing pushes
 	struct pound_floor_answer *answer = &t->answers[t->n_floors];
 	*answer = (struct pound_floor_answer){0};
 	for (int d = 0; d < POUND_DRIVES; d++)

@@ -1,8 +1,10 @@
 /* unit_floor.c - spectra and histories of whole scenes: closed forms, a plain integrator, limits and bits. */
 #include <math.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "engine/solver/solver.h"
 #include "tests/support/check.h"
 #include "tests/support/floor_tasks.h"
 
@@ -175,6 +177,45 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	}
 }
 
+/* Floors that are followed at once, pairs of any laws with a chain among them, have the bits that each has alone. */
+static void floors_at_once_are_those_alone(void **state)
+{
+	(void)state;
+	enum { FREQUENCIES = 21 };
+	const struct pound_spectrum spectrum = {
+	    .n = FREQUENCIES, .min_hz = 0.2, .max_hz = 300, .damping_ratio = 0.05};
+	static struct specimen specimens[POUND_FLOORS];
+	static double numbers[POUND_FLOORS][POUND_DRIVES][FREQUENCIES];
+	struct pound_task tasks[POUND_FLOORS];
+	struct pound_floor_ask asks[POUND_FLOORS];
+	struct pound_floor_answer answers[POUND_FLOORS];
+	for (int k = 0; k < POUND_FLOORS; k++) {
+		specimen_random(&specimens[k], k, 0.01, 401 + 40 * k);
+		tasks[k] = floor_task_task(&specimens[k], k % 5 != 2);
+		if (k == 8) {
+			tasks[k].law = pound_task_law(&tasks[k]);
+			tasks[k].force = POUND_FORCE_STRAIGHT;
+			assert_true(pound_runs_as_chain(&tasks[k]));
+		}
+		asks[k] = (struct pound_floor_ask){
+		    .task = &tasks[k], .n_drives = 1 + k % 2, .radians = k % 3 ? 1.5 : 0.75, .scratch = scratch};
+		answers[k] = (struct pound_floor_answer){.psa = {numbers[k][0], numbers[k][1]}};
+	}
+	void *memory = aligned_alloc(64, (pound_floor_bytes(FREQUENCIES) / 64 + 1) * 64);
+	assert_non_null(memory);
+	struct pound_floor *floor = pound_floor_init(memory, &spectrum);
+	assert_int_equal(pound_floor_spectra(floor, asks, answers, POUND_FLOORS), POUND_OK);
+	for (int k = 0; k < POUND_FLOORS; k++) {
+		struct pound_floor_answer alone = {.psa = {psa[0], psa[1]}};
+		assert_int_equal(pound_floor_spectra(floor, &asks[k], &alone, 1), POUND_OK);
+		for (int d = 0; d < asks[k].n_drives; d++)
+			assert_memory_equal(numbers[k][d], psa[d], sizeof numbers[k][d]);
+		assert_true(alone.contacts == answers[k].contacts && alone.impulse_max == answers[k].impulse_max);
+		specimen_free(&specimens[k]);
+	}
+	free(memory);
+}
+
 struct largest_drive {
 	const struct pound_task *task;
 	struct pound_floor_stretch stretch;
@@ -336,6 +377,7 @@ CHECK_MAIN(cmocka_unit_test(a_range_of_frequencies_is_a_geometric_one),
            cmocka_unit_test(a_plain_integrator_finds_the_same_spectrum),
            cmocka_unit_test(half_the_steps_give_the_same_spectra),
            cmocka_unit_test(every_lane_count_gives_the_same_bits),
+           cmocka_unit_test(floors_at_once_are_those_alone),
            cmocka_unit_test(a_stiff_oscillator_shows_the_largest_acceleration),
            cmocka_unit_test(without_contact_there_is_no_push),
            cmocka_unit_test(a_history_has_every_sample_and_both_sides_of_every_event),

@@ -1,4 +1,4 @@
-/* unit_oscillator_bank.c - oscillators on given motions, against closed forms; the same bits at every lane count. */
+/* unit_oscillator_bank.c - oscillators on given motions, against closed forms. */
 #include <math.h>
 #include <string.h>
 
@@ -178,6 +178,55 @@ static void shorter_steps_change_nothing(void **state)
 	}
 }
 
+/* Motions whose squares are no numbers any more have the spectrum of larger ones: proofs do not rest on squares then. */
+static void tiny_motions_have_the_spectrum_of_large_ones(void **state)
+{
+	(void)state;
+	double w[OSCILLATORS], once[OSCILLATORS];
+	for (int k = 0; k < OSCILLATORS; k++)
+		w[k] = exp(0.45 * k);
+	for (int power = 0; power >= -800; power -= 100) {
+		struct pound_bank bank = bank_of(w, OSCILLATORS, 0.05);
+		half_sine(0.3, 10, 1);
+		for (int i = 0; i < stretch.n; i++) {
+			struct pound_polynomial *a = &stretch.piece[i].floor;
+			for (int n = 0; n <= POUND_FLOOR_ORDER; n++)
+				a->c[n] = ldexp(a->c[n], power);
+			for (int d = 0; d < 3; d++)
+				a->bound[d] = ldexp(a->bound[d], power);
+		}
+		move(&bank);
+		for (int k = 0; k < OSCILLATORS; k++) {
+			const double top = ldexp(bank.top[0][k], -power);
+			if (power)
+				check_near(top / once[k], 1, 1e-13);
+			else
+				once[k] = top;
+		}
+	}
+}
+
+/* Nearly critical damping: a step of acceleration overshoots at pi/(w s), s = sqrt(1 - xi^2). */
+static void strongly_damped_oscillators_are_exact(void **state)
+{
+	(void)state;
+	for (double xi = 0.1; xi < 0.97; xi += 0.06) {
+		double w[OSCILLATORS];
+		for (int k = 0; k < OSCILLATORS; k++)
+			w[k] = exp(0.4 * k);
+		struct pound_bank bank = bank_of(w, OSCILLATORS, xi);
+		stretch.n = 0;
+		for (int i = 0; i < 60; i++) {
+			struct pound_floor_piece *piece = piece_next(0.3, 0);
+			piece->floor.c[0] = -1;
+			piece->floor.bound[0] = 1;
+		}
+		move(&bank);
+		for (int k = 0; k < OSCILLATORS; k++)
+			check_near(w[k] * w[k] * bank.top[0][k], 1 + exp(-xi * pi / sqrt(1 - xi * xi)), 2e-13);
+	}
+}
+
 /* A slow oscillator takes the steps of the fastest of its group, and rounds no more for that. */
 static void a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group(void **state)
 {
@@ -225,5 +274,7 @@ CHECK_MAIN(cmocka_unit_test(a_half_sine_gives_the_known_shock_spectrum),
            cmocka_unit_test(a_step_of_acceleration_overshoots_as_it_must),
            cmocka_unit_test(the_contact_s_part_drives_its_own_oscillators),
            cmocka_unit_test(shorter_steps_change_nothing),
+           cmocka_unit_test(tiny_motions_have_the_spectrum_of_large_ones),
+           cmocka_unit_test(strongly_damped_oscillators_are_exact),
            cmocka_unit_test(a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group),
            cmocka_unit_test(a_piece_whose_last_coefficient_is_no_rounding_is_followed_to_rounding))
