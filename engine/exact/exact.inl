@@ -205,7 +205,7 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 	ahead->moving = on & more;
 }
 
-/* Given    g, maps  what does not change meanwhile;  observed: a lane has an observer */
+/* Given    g, maps, scope  what does not change meanwhile */
 LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
                             const struct free_map maps[2], struct scope scope)
 {

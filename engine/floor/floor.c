@@ -33,7 +33,7 @@ struct pound_floor {
 	double
 	    *states; /* of the oscillators of every floor  (POUND_FLOORS x POUND_DRIVES x 3, whole groups each) */
 	double damping;
-	struct pound_floor_motion motion; /* of a history */
+	struct pound_floor_motion motion; /* of a history, and of a chain */
 	struct pound_segment_powers powers;
 	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 	struct pound_floor_stretch stretch;
@@ -108,17 +108,21 @@ struct follower {
 	struct pound_floor_beside *beside; /* of a chain, as struct pound_floor_motion has it */
 };
 
-static void pair_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
-                        const struct follower *follower, struct pound_task_result *result)
+/* A pair with an observer, who asks for no largest displacements. */
+static struct pound_task observed_pair(const struct pound_task *task,
+                                       const struct pound_task_observer *observer)
 {
-	struct pound_task observed = *ask->task;
-	observed.observer = &follower->observer;
-	// the largest displacements, where they are asked for
+	struct pound_task observed = *task;
+	observed.observer = observer;
 	observed.bodies[0].followed = observed.bodies[1].followed = false;
-	floor->motion.task = ask->task;
-	pound_floor_start(&floor->motion);
-	// one task alone is done sooner in one lane than in many
-	bool followed = pound_exact_lanes(1, &observed, result, 1, ask->scratch, ask->stop);
+	return observed;
+}
+
+/* Follows n pairs: one alone is done sooner in one lane than in many. */
+static void pairs_follow(const struct pound_task *observed, struct pound_task_result *results, int n,
+                         const struct pound_floor_ask *ask)
+{
+	bool followed = pound_exact_lanes(n > 1 ? 0 : 1, observed, results, n, ask->scratch, ask->stop);
 	assert(followed);
 	(void)followed;
 }
@@ -230,7 +234,10 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	} else if (pound_runs_as_chain(ask->task)) {
 		pair_follow_as_chain(floor, ask, result);
 	} else {
-		pair_follow(floor, ask, follower, result);
+		const struct pound_task observed = observed_pair(ask->task, &follower->observer);
+		motion->task = ask->task;
+		pound_floor_start(motion);
+		pairs_follow(&observed, result, 1, ask);
 	}
 	if (pound_stopped(ask->stop))
 		return POUND_STOPPED;
@@ -342,19 +349,13 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 			continue;
 		}
 		observers[n_observed] = (struct pound_task_observer){.observe = follow_observe, .into = follow};
-		observed[n_observed] = *asks[k].task;
-		observed[n_observed].observer = &observers[n_observed];
-		// the largest displacements, where they are asked for
-		observed[n_observed].bodies[0].followed = observed[n_observed].bodies[1].followed = false;
+		observed[n_observed] = observed_pair(asks[k].task, &observers[n_observed]);
 		pound_floor_start(&follow->motion);
 		of[n_observed++] = k;
 	}
 	struct pound_task_result found[POUND_FLOORS] = {0};
-	// one task alone is done sooner in one lane than in many
-	bool followed = n_observed == 0 || pound_exact_lanes(n_observed > 1 ? 0 : 1, observed, found, n_observed,
-	                                                     asks->scratch, asks->stop);
-	assert(followed);
-	(void)followed;
+	if (n_observed)
+		pairs_follow(observed, found, n_observed, asks);
 	for (int i = 0; i < n_observed; i++) {
 		follow_empty(&floor->follows[of[i]]);
 		results[of[i]] = found[i];

@@ -84,22 +84,19 @@ struct cubic_error {
 
 /* Maps of a whole sample and of its segments, and how far an oscillator may go within the sample: see risk_of_sample. */
 struct maps {
-	struct passage sample, segment;
-	struct drive_map of_sample[POUND_FLOOR_MAPS], of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
+	struct segment whole, segment;
+	struct passage of_whole, of_segment;
+	struct drive_map drive_of_whole[POUND_FLOOR_MAPS], drive_of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
 	vd on_start[G], on_rate[G]; /* of a and its rate at the start of the sample */
 	vd on_bound[3][G];          /* of A, A', A'' */
-	struct cubic_error whole[G];
-};
-
-struct scratch {
-	alignas(64) struct maps maps;
+	struct cubic_error miss_of_whole[G];
 };
 
 static_assert(sizeof POUND_TERMS_REACH == (TERMS + 1) * sizeof(double) && (TERMS + 1) % W == 0,
               "whole vectors");
 static_assert(DERIVATIVES % W == 0, "whole vectors of derivatives");
 static_assert(TERMS < DERIVATIVES, "a series has no more than the derivatives of its force");
-static_assert(sizeof(struct scratch) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
+static_assert(sizeof(struct maps) <= POUND_SPECTRUM_SCRATCH, "the work space is too small");
 
 static int larger(int a, int b)
 {
@@ -250,7 +247,6 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 /* one vector of a group over a segment of a piece */
 struct stage {
 	const struct segment *segment;
-	const struct group *group;
 	int i;               /* of the vector */
 	const double *bound; /* A, A', A'' over the piece */
 	vd z, v, z1, v1;     /* at the start and at the end */
@@ -368,6 +364,9 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	const struct drive made = drive_of(c, order, p, own->bound[0]);
 	const bool any = risk_of_piece(g, s, piece->step, own->bound[0], risk);
 	const double per_step = 1 / p->step;
+	struct cubic_error miss[G];
+	for (int i = 0; i < G && any; i++)
+		miss[i] = cubic_error_of(p, g, i);
 	for (int j = 0; j < p->n; j++) {
 		vd z[G], y[G];
 		force_fill(&force, bank->powers, &made, p, j);
@@ -376,11 +375,10 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 		series_pass(p, &force, z, y);
 		for (int i = 0; i < G; i++) {
 			struct stage stage = {
-			    p, g, i, own->bound, s->z[i], s->v[i], s->z[i] + z[i], vfma(y[i], vsplat(per_step), s->v[i])};
+			    p, i, own->bound, s->z[i], s->v[i], s->z[i] + z[i], vfma(y[i], vsplat(per_step), s->v[i])};
 			if (any && vany(risk[i])) {
 				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
-				const struct cubic_error miss = cubic_error_of(p, g, i);
-				const vm inside = risk_of_segment(&stage, &miss, s->top[i]) & risk[i];
+				const vm inside = risk_of_segment(&stage, &miss[i], s->top[i]) & risk[i];
 				if (vany(inside))
 					s->top[i] = segment_top(&stage, &force, inside, s->top[i]);
 			}
@@ -430,24 +428,24 @@ LANE_INLINE void passage_append(struct passage *all, const struct passage *m, in
 
 /* What the floor of a stiffness does to oscillators over the segments of a sample, and over all of them. */
 static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *bank,
-                           const struct pound_bank_input *input, const struct segment *p)
+                           const struct pound_bank_input *input)
 {
+	const struct segment *p = &maps->segment;
 	const int order = input->stretch->order;
 	struct force force;
 	for (int state = 0; state < 4; state++) {
 		const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
-		double a[POUND_FLOOR_ROOM];
-		vd end_z[G], end_v[G];
+		double a[POUND_FLOOR_ROOM], size = 0;
+		vd *end_z = maps->drive_of_whole[m].z[state], *end_v = maps->drive_of_whole[m].v[state];
 		for (int i = 0; i < G; i++)
 			end_z[i] = end_v[i] = vsplat(0);
 		pound_floor_free_motion(unit, input->stretch->stiffness[m], input->damping, input->time_step, order,
 		                        a);
-		double size = 0;
 		for (int k = 0; k <= order; k++)
 			size += fabs(a[k]);
 		const struct drive drive = drive_of(a, order, p, size);
 		for (int j = 0; j < p->n; j++) {
-			struct drive_map *map = &maps->of_segment[m][j];
+			struct drive_map *map = &maps->drive_of_segment[m][j];
 			vd *z = map->z[state], *v = map->v[state];
 			force_fill(&force, bank->powers, &drive, p, j);
 			for (int i = 0; i < G; i++)
@@ -455,28 +453,26 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 			series_pass(p, &force, z, v);
 			for (int i = 0; i < G; i++) {
 				v[i] = v[i] / p->step;
-				passage_take(&maps->segment, i, &end_z[i], &end_v[i], z[i], v[i]);
+				passage_take(&maps->of_segment, i, &end_z[i], &end_v[i], z[i], v[i]);
 			}
 		}
-		for (int i = 0; i < G; i++)
-			maps->of_sample[m].z[state][i] = end_z[i], maps->of_sample[m].v[state][i] = end_v[i];
 	}
 }
 
 /* All maps of a sample, of every stiffness of a stretch. */
 static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct group *g,
-                      const struct pound_bank_input *input, const struct segment *p)
+                      const struct pound_bank_input *input, int segments)
 {
 	const double h = input->time_step;
-	passage_fill(&maps->segment, p);
-	maps->sample = maps->segment;
-	for (int j = 1; j < p->n; j++)
+	segment_init(&maps->whole, g, h, 1);
+	segment_init(&maps->segment, g, h, segments);
+	passage_fill(&maps->of_segment, &maps->segment);
+	maps->of_whole = maps->of_segment;
+	for (int j = 1; j < segments; j++)
 		for (int i = 0; i < G; i++)
-			passage_append(&maps->sample, &maps->segment, i);
+			passage_append(&maps->of_whole, &maps->of_segment, i);
 	for (int m = 0; m < input->stretch->n_maps; m++)
-		drive_map_fill(maps, m, bank, input, p);
-	struct segment whole;
-	segment_init(&whole, g, h, 1);
+		drive_map_fill(maps, m, bank, input);
 	for (int i = 0; i < G; i++) {
 		const vd zero = vsplat(0), per = g->per_omega[i], per2 = per * per;
 		const vm fast = vless(vsplat(1), g->omega[i] * h);
@@ -485,7 +481,7 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 		maps->on_bound[0][i] = vselect(fast, per2, per * h);
 		maps->on_bound[1][i] = vselect(fast, per2 * (2 * g->damping), zero);
 		maps->on_bound[2][i] = maps->on_rate[i];
-		maps->whole[i] = cubic_error_of(&whole, g, i);
+		maps->miss_of_whole[i] = cubic_error_of(&maps->whole, g, i);
 	}
 }
 
@@ -517,7 +513,6 @@ struct sample_place {
 	const struct pound_floor_piece *piece;
 	const struct maps *maps;
 	const struct group *group;
-	const struct segment *whole, *segment;
 	int i;
 };
 
@@ -525,29 +520,30 @@ struct sample_place {
 LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd top)
 {
 	const int i = at->i;
+	const struct maps *maps = at->maps;
 	const struct state *s = &at->group->s[drive];
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	double room[POUND_FLOOR_ROOM];
 	const double *c, *bound = driven ? at->piece->floor.bound : none.bound;
 	struct force force;
-	struct stage stage = {at->segment, at->group, i, bound, s->z[i], s->v[i], s->z[i], s->v[i]};
-	const struct cubic_error miss = cubic_error_of(at->segment, at->group, i);
-	for (int j = 0; j < at->segment->n; j++) {
-		const struct drive_map *map = &at->maps->of_segment[at->piece->map][j];
+	struct stage stage = {&maps->segment, i, bound, s->z[i], s->v[i], s->z[i], s->v[i]};
+	const struct cubic_error miss = cubic_error_of(&maps->segment, at->group, i);
+	for (int j = 0; j < maps->segment.n; j++) {
+		const struct drive_map *map = &maps->drive_of_segment[at->piece->map][j];
 		vd z = vsplat(0), v = vsplat(0);
 		stage.z = stage.z1, stage.v = stage.v1;
 		for (int k = 0; k < 4 && driven; k++) {
 			z = vfma(map->z[k][i], vsplat(at->piece->state[k]), z);
 			v = vfma(map->v[k][i], vsplat(at->piece->state[k]), v);
 		}
-		passage_take(&at->maps->segment, i, &stage.z1, &stage.v1, z, v);
+		passage_take(&maps->of_segment, i, &stage.z1, &stage.v1, z, v);
 		top = vselect(risk, vmax(top, vabs(stage.z1)), top);
 		const vm inside = risk_of_segment(&stage, &miss, top) & risk;
 		if (vany(inside)) {
 			const int order =
 			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
-			const struct drive made = drive_of(c, order, at->segment, bound[0]);
-			force_fill(&force, at->bank->powers, &made, at->segment, j);
+			const struct drive made = drive_of(c, order, &maps->segment, bound[0]);
+			force_fill(&force, at->bank->powers, &made, &maps->segment, j);
 			top = segment_top(&stage, &force, inside, top);
 		}
 	}
@@ -564,7 +560,7 @@ LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, st
 	const bool driven = drive == POUND_DRIVE_FLOOR;
 	const struct pound_floor_piece *piece = at->piece;
 	const struct pound_polynomial *a = driven ? &piece->floor : &none;
-	const struct drive_map *map = &at->maps->of_sample[piece->map];
+	const struct drive_map *map = &at->maps->drive_of_whole[piece->map];
 	struct state *s = &g->s[drive];
 	for (int i = 0; i < G; i++) {
 		vd z = vsplat(0), v = vsplat(0);
@@ -573,12 +569,12 @@ LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, st
 			z = vfma(map->z[k][i], vsplat(piece->state[k]), z);
 			v = vfma(map->v[k][i], vsplat(piece->state[k]), v);
 		}
-		struct stage stage = {at->whole, g, i, a->bound, s->z[i], s->v[i], s->z[i], s->v[i]};
-		passage_take(&at->maps->sample, i, &stage.z1, &stage.v1, z, v);
+		struct stage stage = {&at->maps->whole, i, a->bound, s->z[i], s->v[i], s->z[i], s->v[i]};
+		passage_take(&at->maps->of_whole, i, &stage.z1, &stage.v1, z, v);
 		vm risk = g->slow ? vmask((1u << W) - 1) : risk_of_sample(at->maps, g, s, i, a);
 		if (g->slow || __builtin_expect(vany(risk), 0)) {
 			s->top[i] = vselect(risk, vmax(s->top[i], vabs(stage.z1)), s->top[i]);
-			risk = risk & risk_of_segment(&stage, &at->maps->whole[i], s->top[i]);
+			risk = risk & risk_of_segment(&stage, &at->maps->miss_of_whole[i], s->top[i]);
 			if (__builtin_expect(vany(risk), 0)) {
 				at->i = i;
 				s->top[i] = sample_top(at, drive, risk, s->top[i]);
@@ -620,25 +616,23 @@ static void group_store(const struct group *g, const struct pound_bank *bank, in
 
 /* One group of oscillators over a whole stretch. */
 static void group_move(const struct pound_bank *bank, const struct pound_bank_input *input, int at,
-                       struct scratch *scratch)
+                       struct maps *maps)
 {
 	struct group g;
-	struct segment whole, of_sample, p;
+	struct segment p;
 	group_load(&g, bank, at);
 	g.slow = g.omega_max * input->time_step <= 1;
 	const int segments = segments_of(g.omega_max, input->time_step, bank->radians);
 	const bool mapped = segments <= SEGMENTS_MAX && input->stretch->n_maps > 0;
-	segment_init(&whole, &g, input->time_step, 1);
-	segment_init(&of_sample, &g, input->time_step, segments);
 	if (mapped)
-		maps_fill(&scratch->maps, bank, &g, input, &of_sample);
+		maps_fill(maps, bank, &g, input, segments);
 	for (int k = 0; k < input->stretch->n; k++) {
 		const struct pound_floor_piece *piece = &input->stretch->piece[k];
 		for (int d = 0; d < bank->n_drives && piece->jump != 0; d++)
 			for (int i = 0; i < G; i++)
 				g.s[d].v[i] = g.s[d].v[i] - vsplat(piece->jump);
 		if (piece->map >= 0 && mapped) {
-			struct sample_place place = {bank, input, piece, &scratch->maps, &g, &whole, &of_sample, 0};
+			struct sample_place place = {bank, input, piece, maps, &g, 0};
 			sample_move(&place, POUND_DRIVE_FLOOR, &g);
 			if (bank->n_drives > 1)
 				sample_move(&place, POUND_DRIVE_PUSH, &g);

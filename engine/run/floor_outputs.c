@@ -105,8 +105,8 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 			    rows[row](dirac, 2 * PI * pound_spectrum_frequency(spectrum, k), spectrum->damping_ratio);
 }
 
-/* Floors that are to be followed together, for some asks. */
-struct together {
+/* Floors that are followed at once, for some asks. */
+struct floor_batch {
 	int n_floors, n_asks;
 	struct pound_floor_ask asks[POUND_FLOORS];       /* (n_floors) */
 	struct pound_floor_answer answers[POUND_FLOORS]; /* (n_floors) */
@@ -118,17 +118,17 @@ struct together {
 };
 
 /* Another floor: with pounding, or without. */
-static void together_add(struct together *t, struct pound_ordinates *o, struct pound_floor_ask ask,
-                         const struct pound_request_floor *request, bool pounding)
+static void batch_add(struct floor_batch *b, struct pound_ordinates *o, struct pound_floor_ask ask,
+                      const struct pound_request_floor *request, bool pounding)
 {
 	ask.task = pounding ? request->pounding : request->free;
 	ask.chain = pounding ? request->row.pounding : request->row.free;
 	ask.n_drives = pounding ? ask.n_drives : 1; // without a contact nothing pushes
-	struct pound_floor_answer *answer = &t->answers[t->n_floors];
+	struct pound_floor_answer *answer = &b->answers[b->n_floors];
 	*answer = (struct pound_floor_answer){0};
 	for (int d = 0; d < POUND_DRIVES; d++)
-		answer->psa[d] = o->psa + (size_t)(t->n_floors * POUND_DRIVES + d) * (size_t)o->n;
-	t->asks[t->n_floors++] = ask;
+		answer->psa[d] = o->psa + (size_t)(b->n_floors * POUND_DRIVES + d) * (size_t)o->n;
+	b->asks[b->n_floors++] = ask;
 }
 
 /* All spectra of one signal.
@@ -167,25 +167,25 @@ static void ordinates_fill(const struct pound_study *study, const struct pound_r
 }
 
 /* Follows the floors of some asks, and fills in what was asked of them. */
-static void together_run(struct together *t, struct pound_ordinates *o, const struct pound_study *study,
-                         const atomic_bool *stop)
+static void batch_run(struct floor_batch *b, struct pound_ordinates *o, const struct pound_study *study,
+                      const atomic_bool *stop)
 {
-	if (t->n_floors)
-		pound_floor_spectra(o->floor, t->asks, t->answers, t->n_floors);
-	for (int i = 0; i < t->n_asks && !pound_stopped(stop); i++) {
-		const struct pound_request_floor *floor = &t->of[i].floor;
-		const struct pound_floor_answer *answers = &t->answers[t->of[i].first];
-		const int n_floors = (i + 1 < t->n_asks ? t->of[i + 1].first : t->n_floors) - t->of[i].first;
+	if (b->n_floors)
+		pound_floor_spectra(o->floor, b->asks, b->answers, b->n_floors);
+	for (int i = 0; i < b->n_asks && !pound_stopped(stop); i++) {
+		const struct pound_request_floor *floor = &b->of[i].floor;
+		const struct pound_floor_answer *answers = &b->answers[b->of[i].first];
+		const int n_floors = (i + 1 < b->n_asks ? b->of[i + 1].first : b->n_floors) - b->of[i].first;
 		enum pound_status status = answers->status ? answers->status : answers[n_floors - 1].status;
-		o->followed[floor->march] = (struct followed){t->of[i].ask + 1, status};
+		o->followed[floor->march] = (struct followed){b->of[i].ask + 1, status};
 		if (status)
 			continue;
 		if (has_spectra(study))
-			spectra_fill(study, floor, answers, stop, t->of[i].values);
+			spectra_fill(study, floor, answers, stop, b->of[i].values);
 		else
-			ordinates_fill(study, floor, answers, t->of[i].values);
+			ordinates_fill(study, floor, answers, b->of[i].values);
 	}
-	t->n_floors = t->n_asks = 0;
+	b->n_floors = b->n_asks = 0;
 }
 
 static int measures_of(const struct pound_study *study)
@@ -230,7 +230,7 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 {
 	int n_items, n_asks = pound_request_count(request, &n_items), n = measures_of(study);
 	const bool spectra = has_spectra(study);
-	struct together together = {0};
+	struct floor_batch batch = {0};
 	memset(o->followed, 0, sizeof *o->followed * (size_t)o->n_tasks);
 	for (int a = 0; a < n_asks && !pound_stopped(stop); a++) {
 		const struct pound_request_floor floor = pound_request_floor(request, a);
@@ -245,19 +245,19 @@ enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct p
 		if (isnan(own[n - 1]) || (!spectra && o->followed[floor.march].ask))
 			continue;
 		work->floors.run += a < n_items ? floors : 0;
-		if (together.n_floors + floors > POUND_FLOORS)
-			together_run(&together, o, study, stop);
+		if (batch.n_floors + floors > POUND_FLOORS)
+			batch_run(&batch, o, study, stop);
 		o->followed[floor.march].ask = a + 1;
-		together.of[together.n_asks].ask = a;
-		together.of[together.n_asks].first = together.n_floors;
-		together.of[together.n_asks].floor = floor;
-		together.of[together.n_asks++].values = own;
+		batch.of[batch.n_asks].ask = a;
+		batch.of[batch.n_asks].first = batch.n_floors;
+		batch.of[batch.n_asks].floor = floor;
+		batch.of[batch.n_asks++].values = own;
 		if (spectra)
-			together_add(&together, o, ask, &floor, false);
+			batch_add(&batch, o, ask, &floor, false);
 		if (!spectra || floor.touches)
-			together_add(&together, o, ask, &floor, floor.touches);
+			batch_add(&batch, o, ask, &floor, floor.touches);
 	}
-	together_run(&together, o, study, stop);
+	batch_run(&batch, o, study, stop);
 	if (!pound_stopped(stop))
 		ordinates_share(o, study, request, values, work);
 	return pound_stopped(stop) ? POUND_STOPPED : POUND_OK;
