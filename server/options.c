@@ -13,7 +13,11 @@
 #include "schema/message/coordinator.h"
 #include "server/memory.h"
 
-enum { WORKERS_MAX = 1024, FIRST_KEY = 256 /* above all letters */ };
+enum {
+	WORKERS_MAX = 1024,
+	FIRST_KEY = 256, /* above all letters */
+	WRONG_USAGE = 2, /* exit status, as that of pound */
+};
 
 #define AT(member) offsetof(struct options, member)
 
@@ -155,6 +159,7 @@ void options_read(struct options *options, int argc, char **argv)
 		    .name = row->name, .key = key_of(row), .arg = row->argument, .doc = texts[i]};
 	}
 	struct reading reading = {.options = options};
+	argp_err_exit_status = WRONG_USAGE;
 	// mistakes have ended the program in there; what is left is no memory, and then nothing is known
 	if (argp_parse(&argp, argc, argv, 0, NULL, &reading) != 0) {
 		fputs("poundd: out of memory\n", stderr);

@@ -296,6 +296,19 @@ static void a_worker_that_cannot_know_where_to_connect_ends(void **state)
 	}
 }
 
+static void wrong_usage_has_one_status_in_every_program(void **state)
+{
+	static const char *const programs[] = {"pound", "poundd", "pound-worker"};
+	(void)state;
+	for (size_t i = 0; i < sizeof programs / sizeof programs[0]; i++) {
+		struct program_outcome outcome =
+		    program_run((const char *const[]){programs[i], "--no-such-option", NULL}, NULL);
+		program_expect(&outcome, 2);
+		assert_non_null(strstr(outcome.err, "--no-such-option"));
+		program_free(&outcome);
+	}
+}
+
 int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
@@ -303,7 +316,8 @@ int main(int argc, char **argv)
 	    cmocka_unit_test(one_worker_computes_for_one_program_after_the_other),
 	    cmocka_unit_test(who_has_not_the_token_gets_no_block_and_keeps_nobody_out),
 	    cmocka_unit_test(what_cannot_be_listened_on_is_said_before_the_study_runs),
-	    cmocka_unit_test(a_worker_that_cannot_know_where_to_connect_ends)};
+	    cmocka_unit_test(a_worker_that_cannot_know_where_to_connect_ends),
+	    cmocka_unit_test(wrong_usage_has_one_status_in_every_program)};
 	(void)argc;
 	setup(NULL);
 	int failed = check_run(argv[0], tests, (int)(sizeof tests / sizeof tests[0]));
