@@ -153,8 +153,8 @@ int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct po
 int pound_floor_terms(double x)
 {
 	int n = 0;
-	while (x > POUND_TERMS_REACH[n])
-		n++;
+	for (int k = 0; k <= POUND_FLOOR_TERMS; k++) // all: no branch foresees where to stop
+		n += x > POUND_TERMS_REACH[k];
 	return n;
 }
 
@@ -349,12 +349,14 @@ static double step_length(double left, double rate)
 static void series_next(struct body_series *s, const struct pound_floor_motion *motion,
                         const struct pound_instant_of_task *at, double left)
 {
-	double terms, rate = at->touching ? motion->rate_touch : motion->rate;
+	const double rate = at->touching ? motion->rate_touch : motion->rate;
+	double terms;
 	s->step = step_length(left, motion->rate);
-	s->order = order_of(motion->rate * s->step);
-	if (at->touching && rate * s->step >= QUASI_STATIC_LEAST && may_be_quasi_static(motion, at, &terms) &&
-	    series_quasi_static(s, motion, at, terms))
-		return;
+	if (at->touching && rate * s->step >= QUASI_STATIC_LEAST && may_be_quasi_static(motion, at, &terms)) {
+		s->order = order_of(motion->rate * s->step);
+		if (series_quasi_static(s, motion, at, terms))
+			return;
+	}
 	s->step = step_length(left, rate);
 	s->order = order_of(rate * s->step);
 	(at->touching ? series_contact : series_separated)(s, terms_of(motion->task, at, s->step));
