@@ -426,7 +426,7 @@ static enum outcome command_run(const struct command *command, int argc, char **
 static void usage(FILE *out)
 {
 	fputs("Usage: pound COMMAND [OPTION...] [ARGUMENT]\n"
-	      "Earthquake-induced pounding of two buildings and its sensitivity to their properties.\n\n",
+	      "Earthquake-induced pounding of neighboring buildings and its sensitivity to their properties.\n\n",
 	      out);
 	for (int i = 0; i < N_COMMANDS; i++) {
 		char call[32];
