@@ -172,8 +172,8 @@ struct chain {
 	bool moving;                              /* displacements are needed */
 	bool curved;                              /* a contact force may be nonlinear */
 	double rate_separated, damping_separated; /* bounds of frequency and damping without contact [1/s] */
-	// constants: 1/m; 1/m if there is a floor above, else 0; 1 if there is a floor below, else 0; base: 1 - inner; ...;
-	// initial stiffness and 1 over it
+	// constants: 1/m; 1/m, but 0 for the top floor; inner, base: 1 or 0 with or without a floor below;
+	// pliancy: 1 over the initial stiffness
 	struct column inverse_mass, inverse_above, inner, base, mass_damping, dashpot, initial, pliancy;
 	// branches
 	struct column stiffness, offset, low, high, direction;
