@@ -99,7 +99,7 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	             EVENT_STORY + POUND_EDGE_REVERSAL, index);
 }
 
-/* Whether a contact ends at zero force, which may be before its overlap ends. */
+/* Whether a contact ends at zero force, which may precede zero overlap. */
 static bool link_forced(const struct link *l)
 {
 	return !l->link->law.tension && l->at.on.damping > 0;
