@@ -1,4 +1,4 @@
-/* batch.inl - simulations side by side: their rows into lanes and out, and which lanes have what.
+/* batch.inl - a batch of simulations: loads their rows into lanes, stores them back, and finds lanes by trait.
  *
  * Included by exact.inl alone, once per lane count.
  *
@@ -6,13 +6,13 @@
 
 #include "engine/numeric/lanes.h"
 
-/* simulations side by side; lanes from n on hold the filler */
+/* simulations that share the lanes; lanes from n on hold the filler */
 struct batch {
 	int n;
 	struct simulation *sim[W];
 	double *row[W];
-	unsigned traits;    /* of any of them */
-	struct queue *from; /* where they waited: scheduler.inl */
+	unsigned traits;    /* union of their traits */
+	struct queue *from; /* the queue they were taken from: scheduler.inl */
 };
 
 /* The lanes in use. */
@@ -21,7 +21,7 @@ static unsigned batch_lanes(const struct batch *b)
 	return (1u << b->n) - 1;
 }
 
-/* Takes a lane out of a set that is not empty. */
+/* Removes the lowest lane from a set that is not empty. */
 static int lane_next(unsigned *lanes)
 {
 	int l = __builtin_ctz(*lanes);
@@ -29,7 +29,7 @@ static int lane_next(unsigned *lanes)
 	return l;
 }
 
-/* Carries one row of every simulation into lanes, or out. */
+/* Loads one row of every simulation into lanes, or stores it back. */
 LANE_INLINE void lanes_fill(struct lanes *g, const struct batch *b, int at)
 {
 	rows_load((vd *)g + at, (const double *const *)b->row, at);
@@ -39,9 +39,9 @@ LANE_INLINE void lanes_empty(const struct lanes *g, const struct batch *b, int a
 	rows_store((const vd *)g + at, b->row, at);
 }
 
-/* Carries one row of constants into lanes.
+/* Loads one row of constants into lanes.
  *
- * Given    common  the rows that all have in common; NULL: they may differ
+ * Given    common  rows shared by all simulations; NULL: the rows may differ
  */
 LANE_INLINE void lanes_constant(struct lanes *g, const struct batch *b, const struct state_rows *common,
                                 int at)
@@ -63,7 +63,7 @@ LANE_INLINE vm batch_trait(const struct batch *b, unsigned trait)
 	return vmask(lanes);
 }
 
-/* Lanes of shared_starts in which an edge decided: that is to be taken back. */
+/* Lanes that run several tasks at once and in which a branch edge decided the step: it is undone, and a task leaves. */
 static unsigned batch_leaving(const struct batch *b, vm decided)
 {
 	if (!(b->traits & TRAIT_SHARED))
@@ -71,14 +71,14 @@ static unsigned batch_leaving(const struct batch *b, vm decided)
 	return vbits(decided & batch_trait(b, TRAIT_SHARED)) & batch_lanes(b);
 }
 
-/* Nothing that became of these lanes is carried out: it goes to a simulation that is none. */
+/* Discards the results of these lanes: their rows are stored to the filler. */
 static void batch_forget(struct batch *b, unsigned lanes, struct simulation *filler)
 {
 	while (lanes)
 		b->row[lane_next(&lanes)] = (double *)&filler->x;
 }
 
-/* Lanes whose bodies overlap without force, and those in which the force has just passed zero. */
+/* Lanes whose bodies overlap without force, and lanes in which the force has just passed zero. */
 LANE_INLINE void batch_forces(const struct batch *b, vm *released, vm *fresh)
 {
 	unsigned gone = 0, passed = 0;

@@ -1,4 +1,4 @@
-/* chain.c - rows of buildings at the widest lanes of this machine.
+/* chain.c - the exact solver of rows of buildings, at the widest lane count of this machine.
  *
  *   task ──> drifts of all stories in lanes ──> series ──> first event ──> next branch ──┐
  *                  ^                                                                     │
@@ -7,11 +7,11 @@
  * chain.inl runs one chain after the other and includes, in this order:
  *
  *   chain_state.inl   columns of floors, links, the start and the end
- *   series.inl        roots of guards on power series: the pair's
+ *   series.inl        first roots of guards on power series, shared with the solver of pairs
  *   chain_series.inl  the series of a step
  *   chain_events.inl  its first event
- *   chain_peaks.inl   largest values inside it
- *   chain_energy.inl  the work done in it
+ *   chain_peaks.inl   largest values inside the step
+ *   chain_energy.inl  work done in the step
  *   chain_step.inl    one step up to an event, and what follows
  *
  * It is compiled once for each lane count: chain_w8.c, chain_w4.c, chain_w1.c, chain_portable.c. */
@@ -21,9 +21,9 @@
 typedef void chain_run(const struct pound_chain_task *, struct pound_chain_result *, int n, void *scratch,
                        const atomic_bool *stop);
 
-/* Bytes of work space of chains whose contacts have a form of force.
+/* Bytes of work space of chains whose contacts have a given form of force.
  *
- * Only of products and powers of the overlap a step has series of its own for every contact (struct curved_step, the end of struct chain).
+ * Only product and power forms need series of every contact in a step (struct curved_step, at the end of struct chain).
  *
  * Test     unit_chain: the_largest_row_of_straight_contacts_takes_a_mebibyte
  */
@@ -33,10 +33,10 @@ size_t pound_chain_scratch(enum pound_force force)
 	                                                                  : POUND_CHAIN_SCRATCH_STRAIGHT;
 }
 
-/* Runs chains at a lane count; 0: the widest there is.
+/* Runs chains at a lane count; 0: the widest available.
  *
- * Given    scratch  pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
- *          stop     looked at throughout: when it is set the results are not to be used; NULL: never
+ * Given    scratch  pound_chain_scratch bytes for their form of contact force, 64-byte aligned
+ *          stop     polled throughout: once it is set the results are invalid; NULL: never stopped
  * Returns  value    false: this machine has no such lanes, nothing was run
  *          results  one for each task  (n)
  */

@@ -1,7 +1,7 @@
-/* chain.h - the response of rows of shear buildings, event by event, to rounding.
+/* chain.h - interface of the exact solver of rows of shear buildings, accurate to rounding.
  *
- * A chain is all floors of a row of buildings, side by side from left to right and from the ground up, under one ground motion.
- * Between events every story and every contact is on a branch of its law and the ground motion is a straight line. */
+ * A chain is all floors of a row of buildings under one ground motion, ordered by building from left to right and from the ground up.
+ * Between events every story and every contact is on one branch of its law and the ground acceleration is linear in time. */
 #ifndef CHAIN_H
 #define CHAIN_H
 
@@ -16,30 +16,30 @@
 #include "engine/scene/law.h"
 
 enum {
-	POUND_CHAIN_FLOORS = 400,               /* of a chain, at most */
-	POUND_CHAIN_LINKS = 400,                /* of a chain, at most */
-	POUND_CHAIN_GROUND = -1,                /* in place of a floor */
-	POUND_CHAIN_SCRATCH = 13 << 17,         /* bytes of work space of any chain, 64-byte aligned */
-	POUND_CHAIN_SCRATCH_STRAIGHT = 1 << 20, /* ... of one without contacts of products and powers */
-	POUND_CHAIN_ORDER = 21,                 /* of the longest series of a piece */
+	POUND_CHAIN_FLOORS = 400,               /* most floors of a chain */
+	POUND_CHAIN_LINKS = 400,                /* most links of a chain */
+	POUND_CHAIN_GROUND = -1,                /* the ground, in place of a floor */
+	POUND_CHAIN_SCRATCH = 13 << 17,         /* bytes of work space for any chain, 64-byte aligned */
+	POUND_CHAIN_SCRATCH_STRAIGHT = 1 << 20, /* ... if every contact force is linear in overlap and rate */
+	POUND_CHAIN_ORDER = 21,                 /* highest order of a piece's series */
 };
 
-/* a floor and the story below it; u is its displacement relative to the ground, d = u - u of the floor below its drift */
+/* a floor and the story below it; u: displacement relative to the ground; d: drift of the story, u less that of the floor below */
 struct pound_chain_floor {
 	double mass;         /* [kg]  > 0 */
-	double dashpot;      /* of the story, per rate of its drift [N s/m] */
-	double mass_damping; /* a0, times mass and velocity; the same for all floors of a building [1/s] */
-	struct pound_backbone story; /* in forces: stiffness [N/m], yield displacement: a drift [m] */
-	const double *modal; /* force on this floor, against the rates of the drifts of its building's stories
-	                                 * [N s/m]  (stories of the building); NULL: none */
-	bool base;           /* the lowest story: a building begins */
+	double dashpot;      /* of the story, per drift rate [N s/m] */
+	double mass_damping; /* a0 of the damping force a0 m v; equal for all floors of a building [1/s] */
+	struct pound_backbone story; /* not per mass: stiffness [N/m], yield drift [m] */
+	const double *modal; /* modal damping: force on this floor per drift rate of each story of its building,
+	                                 * opposing it [N s/m]  (stories of the building); NULL: none */
+	bool base;           /* lowest floor of its building */
 };
 
-/* A contact between a level of a building and one of its right neighbor.
+/* A contact between a level of a building and a level of its right neighbor.
  *
- * A level's displacement is the sum of the weights times the displacements of two floors, and a force on it acts on these with
- * the same weights.  The weights of a side add up to 1; a floor POUND_CHAIN_GROUND does not move: a wall has it twice.
- * A weight 0 goes with any floor of that building. */
+ * A level's displacement is the weighted sum of two floors' displacements, and a force on the level acts on these floors with
+ * the same weights.  The weights of a side add up to 1; both floors of a rigid wall are POUND_CHAIN_GROUND, which does not move.
+ * A floor of weight 0 may be any floor of that building. */
 struct pound_link {
 	int floor[2][2];              /* of the left and the right side */
 	double weight[2][2];          /* [0, 1] */
@@ -47,38 +47,37 @@ struct pound_link {
 	double gap;                   /* [m] */
 };
 
-/* What of a chain is wanted beside impulses, counts, times and the end: what is not is NAN in the result. */
+/* Optional results, beside impulses, counts, times and the final state; those not requested are NAN. */
 enum pound_chain_asked {
 	POUND_CHAIN_DRIFTS = 1,
 	POUND_CHAIN_DISPLACEMENTS = 2,
 	POUND_CHAIN_ACCELERATIONS = 4,
 	POUND_CHAIN_FORCES = 8,
-	POUND_CHAIN_ENERGY =
-	    16, /* balance and losses; no whole samples are passed at once: such a run takes longer */
+	POUND_CHAIN_ENERGY = 16, /* balance and losses; slower, as no whole samples are passed by modal maps */
 	POUND_CHAIN_CLOSING =
-	    32, /* with displacements: no contact acts, but how far its sides close is followed; likewise */
+	    32, /* with displacements: contacts do not act, but closing displacements are recorded; slower, too */
 };
 
-/* The motion of an observed floor over a piece, by the share s of it that is gone: coefficients of powers of s. */
+/* The motion of an observed floor over a piece: coefficients of powers of s, the fraction of the piece that has passed. */
 struct pound_chain_floor_motion {
 	double u, v; /* at the start, relative to the ground [m], [m/s] */
-	double jump; /* of v, just before: rigid impacts [m/s] */
-	// absolute acceleration, and the part of it that contacts give, or the observed link alone where there is one
+	double jump; /* of v at the start, by rigid impacts [m/s] */
+	// absolute acceleration, and its contribution from all contacts, or from the observed link if there is one
 	// [m/s2]  (order + 1)
 	double acceleration[POUND_CHAIN_ORDER + 1], push[POUND_CHAIN_ORDER + 1];
 };
 
 enum { POUND_CHAIN_OBSERVED = 2 };
 
-/* The motion of observed floors between two instants: nothing happens to the chain between them. */
+/* The motion of observed floors between two instants without events in between. */
 struct pound_chain_piece {
 	double time, length;          /* [s] */
-	double ground, slope;         /* acceleration of the ground at the start and its growth [m/s2], [m/s3] */
+	double ground, slope;         /* ground acceleration at the start and its rate [m/s2], [m/s3] */
 	double overlap, overlap_rate; /* of the observed link at the start [m], [m/s] */
 	int order;
-	bool sampled, after_event; /* it starts at a sample of the ground motion, behind an event */
-	bool touching;             /* a contact has a force on the first floor */
-	bool time_is_series; /* time is no multiple of s, but sum clock[n] s^n since the start [s]  (order + 1) */
+	bool sampled, after_event; /* the piece starts at a sample of the ground motion; after an event */
+	bool touching;             /* a contact force acts on the first floor */
+	bool time_is_series;       /* elapsed time is not s times length but sum clock[n] s^n [s]  (order + 1) */
 	double clock[POUND_CHAIN_ORDER + 1];
 	struct pound_chain_floor_motion floors[POUND_CHAIN_OBSERVED];
 };
@@ -86,15 +85,15 @@ struct pound_chain_piece {
 struct pound_chain_observer {
 	void (*observe)(void *into, const struct pound_chain_piece *piece);
 	void *into;
-	int floor; /* the first that is observed */
-	int link; /* the other one is the level at its right side; -1: none, the other one moves with the ground */
+	int floor; /* the first observed floor */
+	int link;  /* the second is the level on its right side; -1: none, the second moves with the ground */
 };
 
-/* A contact that is over, as far as it counts; of rigid ones an impact. */
+/* A contact that has ended and counts (counts.h); for rigid contacts, one impact. */
 struct pound_chain_contact {
 	int link;
 	double begin, end;     /* [s] */
-	double speed, impulse; /* of approach where it began [m/s]; of its force [N s] */
+	double speed, impulse; /* approach speed at the start [m/s]; impulse of the force [N s] */
 };
 
 struct pound_chain_recorder {
@@ -103,13 +102,13 @@ struct pound_chain_recorder {
 };
 
 struct pound_chain_task {
-	const double *ground; /* acceleration at the samples, linear between  [m/s2]  (n_samples) */
+	const double *ground; /* acceleration at the samples, linear in between  [m/s2]  (n_samples) */
 	int n_samples;        /* >= 2 */
 	double time_step;     /* [s] */
 	int n_floors, n_links;
 	const struct pound_chain_floor *floors;      /* (n_floors) */
 	const struct pound_link *links;              /* (n_links); NULL: none */
-	unsigned asked;                              /* of enum pound_chain_asked */
+	unsigned asked;                              /* bits of enum pound_chain_asked */
 	const struct pound_chain_observer *observer; /* NULL: none */
 	const struct pound_chain_recorder *recorder; /* NULL: none */
 };
@@ -118,26 +117,26 @@ enum pound_floor_measure {
 	POUND_FLOOR_DRIFT_MAX,        /* largest |d| [m] */
 	POUND_FLOOR_DISPLACEMENT_MAX, /* largest |u| [m] */
 	POUND_FLOOR_ACCELERATION_MAX, /* largest |u'' + ground|, on both sides of events [m/s2] */
-	POUND_FLOOR_SHEAR_MAX,        /* largest spring force of the story below [N]; goes with the drift */
-	POUND_FLOOR_RESIDUAL,         /* drift at which the story's force is 0 on the way back from the end [m] */
-	POUND_FLOOR_END_U,            /* [m] */
-	POUND_FLOOR_END_V,            /* [m/s] */
-	POUND_FLOOR_LOST, /* work on the story's spring less what it gives back on the way to force 0 [J] */
+	POUND_FLOOR_SHEAR_MAX,        /* largest spring force of the story below [N]; with POUND_CHAIN_DRIFTS */
+	POUND_FLOOR_RESIDUAL,         /* drift at which the final story force unloads to 0 [m] */
+	POUND_FLOOR_END_U,            /* final displacement [m] */
+	POUND_FLOOR_END_V,            /* final velocity [m/s] */
+	POUND_FLOOR_LOST, /* work on the story's spring less the energy recovered on unloading to 0 [J] */
 	POUND_FLOOR_MEASURES
 };
 
 enum pound_link_measure {
 	POUND_LINK_IMPULSE_MAX, /* largest integral of the force over one contact [N s] */
-	POUND_LINK_FORCE_MAX,   /* largest force that pushes [N] */
-	POUND_LINK_CONTACTS,    /* a whole number */
-	POUND_LINK_TIME,        /* in contact [s] */
-	POUND_LINK_FIRST_TIME,  /* of the first contact; 0: none [s] */
-	POUND_LINK_FIRST_SPEED, /* of approach there; 0: none [m/s] */
-	POUND_LINK_SPEED_MAX,   /* largest one of all contacts [m/s] */
-	POUND_LINK_LOST,        /* work on the contact; one still open at the end counts with what it holds [J] */
-	POUND_LINK_CLOSING_MAX, /* largest displacement of the left side less that of the right one, 0 at rest [m] */
-	POUND_LINK_LEFT_MAX,    /* largest magnitude of the left side's displacement [m] */
-	POUND_LINK_RIGHT_MAX, /* of the right side's */
+	POUND_LINK_FORCE_MAX,   /* largest compressive force [N] */
+	POUND_LINK_CONTACTS,    /* number of contacts */
+	POUND_LINK_TIME,        /* total time in contact [s] */
+	POUND_LINK_FIRST_TIME,  /* start of the first contact; 0: none [s] */
+	POUND_LINK_FIRST_SPEED, /* approach speed of the first contact; 0: none [m/s] */
+	POUND_LINK_SPEED_MAX,   /* largest approach speed of all contacts [m/s] */
+	POUND_LINK_LOST, /* work on the contact, including the stored energy of one still open at the end [J] */
+	POUND_LINK_CLOSING_MAX, /* largest displacement of the left side less the right side's, at least 0 [m] */
+	POUND_LINK_LEFT_MAX,    /* largest |displacement| of the left side [m] */
+	POUND_LINK_RIGHT_MAX,   /* ... of the right side [m] */
 	POUND_LINK_MEASURES
 };
 
@@ -146,10 +145,10 @@ struct pound_chain_result {
 	enum pound_status status;
 	double *floors; /* (n_floors x POUND_FLOOR_MEASURES) */
 	double *links;  /* (n_links x POUND_LINK_MEASURES) */
-	// |kinetic + absorbed - put in| over the most along the way of what was put in and of kinetic energy; NAN: not asked
+	// |kinetic + absorbed - input| energy over the largest input or kinetic energy of the motion; NAN: not requested
 	double energy_residual;
 	double
-	    work_in; /* by the ground: -sum of masses times its acceleration times velocities [J]; NAN: not asked */
+	    work_in; /* energy input: -int sum of mass times ground acceleration times velocity dt [J]; NAN: not requested */
 };
 
 size_t pound_chain_scratch(enum pound_force force);

@@ -1,17 +1,17 @@
-/* chain.inl - the exact march of a chain of floors, one at a time, its floors side by side in lanes.
+/* chain.inl - the exact event-driven solver of rows of buildings: one chain at a time, its floors in SIMD lanes.
  *
- * Between events every story and contact is on a straight branch and the ground motion is a straight line, so a step is a power
+ * Between events every story and contact is on a linear branch and the ground acceleration is linear in time, so a step is a power
  * series in time.  It ends at the first root of a guard, found to rounding, or at the next sample.  A chain's bits do not
- * depend on the lane count: lanes meet by shifts between neighbors, and sums go by index.
+ * depend on the lane count: lanes interact only by shifts between neighbors, and sums are taken in index order.
  *
- * Laws, contacts, root searches and tolerances are those of the pair (exact.inl). */
+ * Laws, contacts, root searches and tolerances are shared with the solver of pairs (exact.inl). */
 
 enum {
-	ORDER_LOW = 15,  /* of the series of short steps */
-	ORDER_HIGH = 21, /* of long ones */
+	ORDER_LOW = 15,  /* order of the series of short steps */
+	ORDER_HIGH = 21, /* ... of long steps */
 };
 
-enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
+enum { STOP_STEPS = 1024 }; /* steps between two polls of the caller's stop flag */
 
 // clang-format off
 #include "engine/exact/chain_state.inl"
@@ -28,7 +28,7 @@ enum { STOP_STEPS = 1024 }; /* between two looks at the flag of the caller */
 #include "engine/exact/chain_modal.inl"
 // clang-format on
 
-/* Whether a link's overlap can be had from its floors again: it is far beyond the rounding of their displacements. */
+/* Whether a link's overlap can be computed from its floors again: the sides are separated by far more than rounding. */
 static bool link_far(const struct chain *c, const struct link *l)
 {
 	double terms = l->link->gap;
@@ -37,7 +37,7 @@ static bool link_far(const struct chain *c, const struct link *l)
 	return !l->touching && !l->released && l->p < -0x1p-20 * terms && l->p + c->task->time_step * l->q < 0;
 }
 
-/* Brings to rest what is left of next to nothing of a building that touches none, where nothing comes from the ground. */
+/* Sets the negligible motion of a building without contact to rest, while the ground does not move. */
 static void building_to_rest(struct chain *c, int first, int stories)
 {
 	for (int i = first; i < first + stories; i++)
@@ -59,7 +59,7 @@ static void chain_to_rest(struct chain *c)
 	}
 }
 
-/* Links whose overlap need not be integrated any more. */
+/* Stops integrating the overlaps of links whose sides are far apart. */
 static void links_release(struct chain *c)
 {
 	bool own = false;
@@ -83,7 +83,7 @@ static void chain_interval(struct chain *c)
 	links_release(c);
 }
 
-/* Follows a chain from its start to the end of its ground motion. */
+/* Integrates a chain from its start to the end of its ground motion. */
 static enum pound_status chain_march(struct chain *c, const atomic_bool *stop)
 {
 	int64_t steps = 0;
@@ -114,8 +114,8 @@ static_assert(offsetof(struct chain, curved_step.clock) <= POUND_CHAIN_SCRATCH_S
 /* Runs every task to its end.
  *
  * Given    tasks    (n)
- *          scratch  pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
- *          stop     looked at between steps: when it is set the results are not to be used; NULL: never
+ *          scratch  pound_chain_scratch bytes for their form of contact force, 64-byte aligned
+ *          stop     polled between steps: once it is set the results are invalid; NULL: never stopped
  * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *
  * Source   buildings.md 1 and 3 of the project's design pages
@@ -131,7 +131,7 @@ void POUND_CHAIN(const struct pound_chain_task *tasks, struct pound_chain_result
 		const enum pound_status status = chain_march(c, stop);
 		chain_displacements(c);
 		for (int i = 0; i < c->n_links; i++)
-			if (c->link[i].touching) // a contact still open at the end counts with what it has
+			if (c->link[i].touching) // a contact still open at the end counts with its impulse so far
 				contact_over(c, &c->link[i]);
 		if (c->modal_motion.can && status == POUND_OK)
 			notes_look(c);

@@ -2,7 +2,7 @@
  *
  *   put in    -sum m a_g v        absorbed    sum (r + c d') d' + a0 m v^2 + v C d' + F q
  *
- * by quadrature over the step's series: nothing of the way that these were made is used.
+ * by quadrature over the step's series, independently of the equations of motion that produced them.
  *
  * Included by chain.inl alone, once per lane count, after chain_peaks.inl. */
 
@@ -24,7 +24,7 @@ static double series_at(const double *first, size_t stride, double t)
 	return column_at(first, stride, ORDER_HIGH, t, &rate);
 }
 
-/* Overlap of the contact that gives w, to all digits however small. */
+/* Overlap of the master contact from w, accurate however small. */
 static double curved_overlap(const struct curved_step *x, double t)
 {
 	const double w = series_at(x->w, 1, t);
@@ -97,8 +97,8 @@ static struct powers powers_at(struct chain *c, double t, double weight)
 	return p;
 }
 
-/* Accounts for a step that ended at a share of it.  A ground that takes back within the step what it has given leaves little
- * at the end: what there is at the nodes counts. */
+/* Adds the energy balance of a step that ended at a fraction of its length.  The largest kinetic energy is also taken at the
+ * nodes, as the ground may take it back before the end of the step. */
 static void energy_keep(struct chain *c, double time)
 {
 	const double elapsed = time * c->dt;

@@ -1,15 +1,15 @@
-/* chain_events.inl - the first event of a step of a chain: contacts that begin or end, branches that are left.
+/* chain_events.inl - the first event of a step of a chain: contacts that begin or end, branches that end.
  *
- * Every guard is looked at over the whole step, in lanes: of stories, then of links.  The first root counts; of equal ones that of
- * the lowest rank, contacts before stories, and the others follow at zero time.
+ * Every guard is checked over the whole step, in lanes: links, then stories.  The first root is taken; of simultaneous ones,
+ * contacts before stories, then the lowest index; the others follow in steps of zero length.
  *
  * Included by chain.inl alone, once per lane count, after chain_series.inl. */
 
 /* what ends a step: of a link, or of a story EVENT_STORY + its edge */
 enum {
 	EVENT_BEGINS = EVENT_OWN,
-	EVENT_ENDS,   /* the force does, or the overlap */
-	EVENT_CLEARS, /* what was left of the overlap is gone */
+	EVENT_ENDS,   /* a contact ends, by its force or its overlap */
+	EVENT_CLEARS, /* the overlap left after the force ended is gone */
 	EVENT_LINK,   /* + edge of the branch of its force */
 	EVENT_STORY = EVENT_LINK + 3,
 	EVENT_END = EVENT_STORY + 3,
@@ -17,7 +17,7 @@ enum {
 
 /* the first event so far */
 struct first {
-	double time; /* share of the step  1: none */
+	double time; /* fraction of the step  1: none */
 	int event, index;
 };
 
@@ -35,7 +35,7 @@ static void first_take(struct first *first, double time, int event, int index)
 		*first = (struct first){time, event, index};
 }
 
-/* Takes what a search found in some lanes.
+/* Merges the results of a search in some lanes.
  *
  * Given    index  of the story or link in each lane  (W)
  */
@@ -51,7 +51,7 @@ static void search_take(struct first *first, const struct search *search, vm lan
 	}
 }
 
-/* Looks for where a guard becomes positive in some lanes of a vector. */
+/* Searches for the time at which a guard becomes positive, in some lanes of a vector. */
 static void guard_search(struct first *first, const struct chain *c, struct guard guard, vm lanes, int event,
                          const int *index)
 {
@@ -60,7 +60,7 @@ static void guard_search(struct first *first, const struct chain *c, struct guar
 	search_take(first, &search, lanes, index);
 }
 
-/* The branches of a vector of stories. */
+/* Searches for the branch edges of a vector of stories. */
 LANE_INLINE void stories_search(struct first *first, const struct chain *c, int i)
 {
 	const vd zero = vsplat(0), one = vsplat(1);
@@ -99,16 +99,16 @@ LANE_INLINE void stories_search(struct first *first, const struct chain *c, int 
 	             EVENT_STORY + POUND_EDGE_REVERSAL, index);
 }
 
-/* Whether a contact ends where its force does, which may be before its overlap does. */
+/* Whether a contact ends at zero force, which may precede zero overlap. */
 static bool link_forced(const struct link *l)
 {
 	return !l->link->law.tension && l->at.on.damping > 0;
 }
 
-/* Bounds the overlaps of a vector of links over a step: of those that are integrated in their own right by their series, of others
- * by their floors'.
+/* Encloses the overlaps of a vector of links over a step: by their own series if they are integrated, else by the enclosures of
+ * their floors.
  *
- * Returns  value  bits of the links to look at: those, and others that may begin to touch
+ * Returns  value  bits of the links to search: integrated ones, and others that may begin to touch
  */
 LANE_INLINE unsigned overlaps_bound(struct enclosures *x, const struct chain *c, int j)
 {
@@ -146,7 +146,7 @@ LANE_INLINE unsigned overlaps_bound(struct enclosures *x, const struct chain *c,
 	return some | own;
 }
 
-/* What overlaps do over a step, and a list of the links to look at. */
+/* Encloses all overlaps over a step, and lists the links to search. */
 static void overlaps_enclose(struct chain *c, struct link_list *some)
 {
 	some->n = 0;
@@ -163,7 +163,7 @@ struct link_lanes {
 	unsigned forced;                      /* touching, and ends with its force */
 	double low[W], high[W], direction[W]; /* of the branches of those that touch */
 	double
-	    phase_lead[W]; /* damping over stiffness, over the step: how far the force is ahead of the overlap */
+	    phase_lead[W]; /* damping over stiffness, over the step: time by which the force leads the overlap */
 	double acceleration[W]; /* magnitude of the overlap's second derivative */
 	unsigned fresh;
 };
@@ -190,7 +190,7 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, const s
 		const struct link *link = &c->link[x->index[l]];
 		const unsigned bit = 1u << l;
 		if (link_curved(link) || link->held)
-			continue; // nonlinear_contact_step.inl looks at them
+			continue; // searched by nonlinear_contact_step.inl and held_search
 		x->open |= link->touching || link->released ? 0 : bit;
 		x->released |= link->released ? bit : 0;
 		x->touching |= link->touching ? bit : 0;
@@ -214,8 +214,8 @@ static void link_lanes_make(struct link_lanes *x, const struct chain *c, const s
 	                       links_load(x->index, overlap->fourth_max.at)};
 }
 
-/* Rates of overlaps of a vector of links, over the step: their derivatives by its share; where the step is no share of time, the
- * rates themselves (nonlinear_contact.inl), as the share stands still where a power begins or ends. */
+/* Rates of overlaps of a vector of links: derivatives by the fraction of the step; in steps of nonlinear_contact.inl the rates by
+ * time, as the derivative by s vanishes where a power contact begins or ends. */
 static void link_rates(struct power *rate, const struct chain *c, const struct motion *overlap,
                        const int *index)
 {
@@ -231,8 +231,8 @@ static void link_rates(struct power *rate, const struct chain *c, const struct m
 	}
 }
 
-/* Looks for where forces fall through 0, of those that touch, or rise through it again, of those whose force is gone before
- * their overlap, and for where these clear. */
+/* Searches for the time at which the force of a touching link falls through 0, or of a released link rises through it again, and
+ * at which a released link is clear. */
 static void forces_search(struct first *first, const struct chain *c, const struct link_lanes *x,
                           const struct motion *overlap, unsigned lanes)
 {
@@ -242,7 +242,7 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	link_rates(&rate, c, overlap, x->index);
 	for (int n = 0; n <= c->order; n++)
 		guard.c[n] = sign * vfma(phase_lead, rate.c[n], overlap->u.c[n]);
-	// where the force has just passed 0 it is beyond by a rounding (step.inl: force_search)
+	// a force that has just passed 0 is taken as beyond it (step.inl: force_search)
 	const vd below =
 	    vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, lanes_load(x->acceleration), overlap->u.c[0]));
 	guard.c[0] = vselect(fresh, below, guard.c[0]);
@@ -259,7 +259,7 @@ static void forces_search(struct first *first, const struct chain *c, const stru
 	search_take(first, &search, released, x->index);
 }
 
-/* The overlaps of links that are not integrated in their own right. */
+/* Fills the overlap series of links that are not integrated, from their floors. */
 static void overlaps_fill(struct chain *c, unsigned lanes, const int *index)
 {
 	for (; lanes; lanes &= lanes - 1) {
@@ -272,7 +272,7 @@ static void overlaps_fill(struct chain *c, unsigned lanes, const int *index)
 	}
 }
 
-/* A vector of the links to look at. */
+/* Searches a vector of links. */
 static void links_search(struct first *first, struct chain *c, const struct link_list *some, int from)
 {
 	const vd zero = vsplat(0), one = vsplat(1);
@@ -316,13 +316,13 @@ static void links_search(struct first *first, struct chain *c, const struct link
 	             EVENT_LINK + POUND_EDGE_REVERSAL, x.index);
 }
 
-/* Looks for where the force that holds the sides of a rigid contact together falls through 0. */
+/* Searches for the time at which the force between the sides of a held rigid contact falls through 0. */
 static void held_search(struct first *first, const struct chain *c, int j)
 {
 	struct power guard;
 	for (int n = 0; n <= ORDER_HIGH; n++)
 		guard.c[n] = vsplat(n + 2 <= c->order ? -c->overlaps[n][j] : 0);
-	// no more than the rounding of what it is made of: nothing, and the next derivative decides (chain_series.inl: link_zero_rounding)
+	// below the rounding error of its terms: set to zero, the next derivative decides (chain_series.inl: link_zero_rounding)
 	if (fabs(c->overlaps[0][j]) <= POUND_UNDECIDED * held_terms(c, &c->link[j]))
 		guard.c[0] = vsplat(0);
 	struct search search = {.time = vsplat(1), .event = vsplat(EVENT_NONE)};

@@ -2,15 +2,15 @@
  *
  *   q'' + c q' + w^2 q = -G (a + d t/h)          of each mode of each building, exact over a sample for any w h
  *
- * Drifts and their rates at the samples are sums over modes.  The cubic through both ends of a sample, widened by the bound of its
- * error, proves that nothing lies between: no contact, no edge of a branch, no new largest value.  Where it cannot, the sample
- * goes by power series, and so does a row in which a story yields: speed.md says what modes of the tangent stiffness would cost.
+ * Drifts and their rates at the samples are sums over modes.  The cubic through both ends of a sample, widened by its error
+ * bound, proves that no event lies between: no contact, no edge of a branch, no new largest value.  Without this proof the sample
+ * is integrated by power series, as are rows with a yielding story: speed.md has the cost of modes of the tangent stiffness.
  *
  * Included by chain.inl alone, once per lane count, after chain_step.inl. */
 
 static const double REACH_SERIES = 0.8; /* (w + c) h of a map's series: 0.8^18/18! = 3e-18 */
 enum { ORDER_MAP = 18 };
-/* Highest over lowest frequency of a building that moves by its modes: shapes of low modes have roundings of the square of that. */
+/* Largest ratio of highest to lowest frequency for modal maps: shapes of low modes have rounding errors of the square of the ratio. */
 static const double STIFF = 90;
 
 /* response of a mode to an initial velocity of 1, its rate, and its integrals once and twice, after some time */
@@ -54,13 +54,13 @@ static struct impulse_response mode_response(double w, double c, double h)
 	return r;
 }
 
-/* Puts a mode's map over a sample into the columns.
+/* Computes a mode's map over a sample.
  *
  * Given    i      lane of the mode
  *          gain   G
  *
- * What bounds the fourth derivative is that of the motion about its quasi-static part, whose energy does not grow.  Above some
- * 8 radians a sample the motion itself is a better bound.
+ * The fourth derivative is bounded by that of the motion about its quasi-static part, whose energy does not grow.  Above about
+ * 8 radians per sample the motion itself gives a better bound.
  */
 static void mode_fill(struct modal_motion *f, int i, double w, double c, double gain, double h)
 {
@@ -87,9 +87,9 @@ static void mode_fill(struct modal_motion *f, int i, double w, double c, double 
 	f->fourth_max_rate.at[i] = smaller(quartic, swing) / w;
 }
 
-/* Damping of a building's modes, if they do not act on each other.
+/* Damping of a building's modes, if damping does not couple them.
  *
- * Returns  value  false: they do
+ * Returns  value  false: the modes are coupled
  *          c      [1/s]  (n)
  */
 static bool modes_damping(const struct pound_chain_floor *floor, int n, const struct pound_modes *modes,
@@ -126,7 +126,7 @@ static bool modes_damping(const struct pound_chain_floor *floor, int n, const st
 	return apart;
 }
 
-/* Where a chain's modes are kept: of the vector of floors j those of its buildings, a row of coefficients for each. */
+/* Lays out the shape rows: per vector of floors, one row for each mode of the buildings in it. */
 static void modal_rows(struct chain *c)
 {
 	struct modal_motion *f = &c->modal_motion;
@@ -240,7 +240,7 @@ static void modal_enter(struct chain *c)
 
 /* ---- a sample ---- */
 
-/* Modes over a sample, and what bounds their fourth derivatives. */
+/* Advances the modes over a sample, and bounds their fourth derivatives. */
 LANE_INLINE void modes_move(struct modal_motion *f, int wide, double ground, double rise)
 {
 	const vd a = vsplat(ground), d = vsplat(rise);
@@ -260,7 +260,7 @@ LANE_INLINE void modes_move(struct modal_motion *f, int wide, double ground, dou
 	}
 }
 
-/* drifts of a vector of stories and their rates, and what bounds their fourth derivatives */
+/* drifts of a vector of stories, their rates, and bounds of their fourth derivatives */
 struct drifts {
 	vd d, v, fourth_max;
 };
@@ -290,10 +290,10 @@ LANE_INLINE struct drifts drifts_sum(const struct modal_motion *f, int i)
 	return (struct drifts){even.d + odd.d, even.v + odd.v, even.fourth_max + odd.fourth_max};
 }
 
-/* Elastic and damping forces of modes per modal mass at a sample, -(c q' + w^2 q), of which absolute accelerations are sums, their
- * rates, and what bounds their fourth derivatives over the sample before.
+/* Elastic and damping forces of modes per modal mass at a sample, -(c q' + w^2 q), which sum to absolute accelerations; their
+ * rates, and bounds of their fourth derivatives over the sample before.
  *
- * Given    ground  acceleration there
+ * Given    ground  acceleration at the sample
  */
 LANE_INLINE void modes_force(struct modal_motion *f, const struct column *q, const struct column *v, int wide,
                              double ground)
@@ -399,7 +399,7 @@ LANE_INLINE double *note_column(struct chain *c, int k, int column)
 	return &c->modal_motion.kept[(k * NOTE_COLUMNS + column) * c->wide];
 }
 
-/* Whether a sample may still hold a largest value. */
+/* Whether a noted sample may still contain a largest value. */
 static bool note_stands(struct chain *c, int k)
 {
 	const struct column *tops[] = {&c->top_drift, &c->top_displacement, &c->top_acceleration};
@@ -412,7 +412,7 @@ static bool note_stands(struct chain *c, int k)
 	return false;
 }
 
-/* Notes the sample that ends at c->next: larger values come more often than not, so it is looked into at the end.
+/* Notes the sample that ends at c->next, to be examined at the end: usually larger values follow.
  *
  * Returns  value  false: there is no room
  */
@@ -448,7 +448,7 @@ LANE_SHARED bool note_keep(struct chain *c, const struct modal_place *from)
 	return true;
 }
 
-/* Goes through a noted sample again, by power series, for its largest values alone. */
+/* Integrates a noted sample again, by power series, for its largest values only. */
 static void note_look(struct chain *c, int k)
 {
 	const double *d = note_column(c, k, NOTE_D), *v = note_column(c, k, NOTE_V);
@@ -472,7 +472,7 @@ static void note_look(struct chain *c, int k)
 	}
 }
 
-/* Looks into the samples noted, when a chain has come to its end. */
+/* Examines the noted samples at the end of a chain. */
 static void notes_look(struct chain *c)
 {
 	struct modal_motion *f = &c->modal_motion;
@@ -496,9 +496,9 @@ static void notes_look(struct chain *c)
 	c->v = f->at[0].v;
 }
 
-/* Flies over the sample that ends at c->next, if nothing happens inside.
+/* Advances by modes over the sample that ends at c->next, if no event can occur inside.
  *
- * Returns  value  false: something may; nothing has changed
+ * Returns  value  false: an event is possible; the state is unchanged
  */
 LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 {
@@ -573,8 +573,8 @@ LANE_INLINE bool modal_sample(struct chain *c, bool edged, bool moving)
 	return true;
 }
 
-/* Ends what is left of next to nothing while the ground is silent: below nothing could be proved, and every operation would take
- * a hundred times as long. */
+/* Sets negligible motion to rest while the ground does not move: subnormal numbers would make every operation a hundred times
+ * slower, and bounds useless. */
 static void modal_to_rest(struct chain *c)
 {
 	struct modal_motion *f = &c->modal_motion;
@@ -599,7 +599,7 @@ LANE_INLINE void modal_samples(struct chain *c, const atomic_bool *stop, bool ed
 	}
 }
 
-/* Moves from the sample before c->next by modes, as far as no event occurs.  After a try that went no sample the next one waits. */
+/* Advances from the sample before c->next by modes until an event is possible.  Tries that pass no sample delay the next try. */
 static void modal_advance(struct chain *c, const atomic_bool *stop)
 {
 	enum { WAIT_MAX = 8 };

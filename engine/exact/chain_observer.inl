@@ -48,7 +48,7 @@ static double acceleration_at(const struct chain *c, int i, int n)
 	return sum + floor;
 }
 
-/* Fills the motion of the observed floor, and of the level opposite it, up to a share of the step. */
+/* Fills the motion of the observed floor and of the level opposite, up to a fraction of the step. */
 static void floors_report(const struct chain *c, double time, struct pound_chain_piece *piece)
 {
 	static const int ground[2] = {POUND_CHAIN_GROUND, POUND_CHAIN_GROUND};
@@ -77,7 +77,7 @@ static void floors_report(const struct chain *c, double time, struct pound_chain
 	}
 }
 
-/* Reports the motion of the observed floors up to a share of the step. */
+/* Reports the motion of the observed floors up to a fraction of the step. */
 static void pieces_report(struct chain *c, double time)
 {
 	const struct pound_chain_observer *observer = c->task->observer;

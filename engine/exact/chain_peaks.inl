@@ -1,14 +1,14 @@
 /* chain_peaks.inl - largest values inside a step: of drifts, displacements, accelerations and contact forces.
  *
- * Where the bound of a motion exceeds what is known, its rate is followed from root to root: several modes turn several times in
- * a step.
+ * If the bound of a quantity exceeds its largest value so far, the roots of its rate are found one after the other: with several
+ * modes it can reverse several times in a step.
  *
  * Included by chain.inl alone, once per lane count, after chain_events.inl. */
 
 enum {
-	REVERSALS = 16, /* of one motion in a step, at most looked for */
+	REVERSALS = 16, /* most reversals searched per step */
 	LEADING =
-	    4, /* zeros that a rate may start with: nonlinear_contact.inl has three where a contact begins */
+	    4, /* most leading zeros of a rate's series: there are three where a contact begins in nonlinear_contact.inl */
 };
 
 /* Bound of |u| inside a step, its ends excluded. */
@@ -18,7 +18,7 @@ LANE_INLINE vd enclosure_reach(const struct enclosure *c)
 	return vfma(vsplat(POUND_CUBIC_ERROR), c->fourth_max, vmax(vabs(b1), vabs(b2)));
 }
 
-/* A series as one of the time from t on. */
+/* Shifts the origin of a series to time t. */
 static void power_shift(struct power *x, int order, vd t)
 {
 	for (int i = 0; i < order; i++)
@@ -28,11 +28,11 @@ static void power_shift(struct power *x, int order, vd t)
 
 /* Largest magnitude inside a step.
  *
- * Given    x       changed
- *          end     share of the step that is gone where it ended
- *          top     the largest that is known, with both ends
- *          mirror  -1: of the magnitude; 0: of values above 0
- *          lanes   to look into
+ * Given    x       series; overwritten
+ *          end     fraction of the step at which it ended
+ *          top     the largest value so far, including both ends
+ *          mirror  -1: magnitudes; 0: only values above 0
+ *          lanes   lanes to search
  */
 LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror, vm lanes)
 {
@@ -67,7 +67,7 @@ LANE_SHARED vd top_follow(struct power *x, int order, vd end, vd top, vd mirror,
 	return top;
 }
 
-/* Largest values of a column of series in a step that ended at a share of it. */
+/* Updates the largest values of a column of series, for a step that ended at a fraction of its length. */
 LANE_INLINE void tops_keep(const struct chain *c, const struct column series[TERMS],
                            const struct enclosures *enclosures, const struct column *end, double time,
                            struct column *tops)
@@ -86,7 +86,7 @@ LANE_INLINE void tops_keep(const struct chain *c, const struct column series[TER
 	}
 }
 
-/* Follows the accelerations of a vector of floors over a step. */
+/* Updates the largest accelerations of a vector of floors. */
 static void acceleration_follow(struct chain *c, struct power *x, int i, double time)
 {
 	const vd there = power_at(x, c->order, vsplat(time));
@@ -128,7 +128,7 @@ static void accelerations_keep(struct chain *c, double time)
 	}
 }
 
-/* Largest force that pushes, of a contact. */
+/* Updates the largest compressive force of a contact. */
 static void force_keep(struct chain *c, struct link *l, int j, double time)
 {
 	const double k = l->at.on.stiffness, damping = l->at.on.damping / c->dt;
@@ -154,11 +154,11 @@ static void force_keep(struct chain *c, struct link *l, int j, double time)
 	*most = value[0];
 }
 
-/* Largest sum of a link's ends, whose floors' displacements are those of the step and of its end.
+/* Largest weighted sum of displacements over the ends of a link in a step.
  *
- * Given    l        its ends, or some of them
- *          mirror   -1: of the magnitude; 0: of values above 0
- *          most     the largest so far; changed
+ * Given    l        a link, or one side of it
+ *          mirror   -1: magnitudes; 0: only values above 0
+ *          most     the largest so far; updated
  */
 static void ends_keep(const struct chain *c, const struct link *l, double mirror, double time, double *most)
 {
@@ -181,7 +181,7 @@ static void ends_keep(const struct chain *c, const struct link *l, double mirror
 	*most = value[0];
 }
 
-/* Largest closing displacement and those of both sides, of a link that does not act. */
+/* Updates the largest closing displacement, and the largest displacements of both sides, of a link without force. */
 static void closing_keep(const struct chain *c, const struct link *l, double time)
 {
 	struct link side[2] = {{.n_ends = 0}, {.n_ends = 0}};

@@ -1,12 +1,12 @@
-/* chain_series.inl - the power series of a chain over a step: all floors side by side in lanes, order by order.
+/* chain_series.inl - the power series of a chain over a step: all floors in lanes, order by order.
  *
  *   S = k h^2 D_n + c h (n+1) D_(n+1)                             spring and dashpot of a story
  *   A = (S of the story above - S)/m - contacts/m
- *   D_(n+2) = (A - A of the floor below - a0 h (n+1) D_(n+1))/((n+1)(n+2))      of the lowest story: the ground's
+ *   D_(n+2) = (A - A of the floor below - a0 h (n+1) D_(n+1))/((n+1)(n+2))      below the lowest story: the ground's A
  *   U_(n+2) = (A - ground - a0 h (n+1) U_(n+1))/((n+1)(n+2))
  *
- * D are drifts and U displacements, by the share of the step that is gone.  A drift has its own series: the difference of two
- * displacements would lose the digits of a stiff story, and so it is with the overlap of a contact.
+ * D are drifts and U displacements, by the elapsed fraction of the step.  A drift has its own series: the difference of two
+ * displacements would cancel in a stiff story; the overlap of a contact likewise.
  *
  * Included by chain.inl alone, once per lane count, after series.inl. */
 
@@ -32,7 +32,7 @@ LANE_INLINE void column_store(struct column *x, int j, vd value)
 	lanes_store(&x->at[j], value);
 }
 
-/* What is in a column at end k of a vector of links. */
+/* Column entries at end k of a vector of links. */
 LANE_INLINE vd ends_load(const struct link_ends *x, int k, int j, const double *column)
 {
 	if (x->follows[k][j / ROW])
@@ -43,7 +43,7 @@ LANE_INLINE vd ends_load(const struct link_ends *x, int k, int j, const double *
 	return lanes_of(at);
 }
 
-/* Adds a contact's force, or what else acts on a floor from outside, of order n. */
+/* Adds order n of a link's force to the external forces on its floors, over masses. */
 LANE_INLINE void push_add(struct chain *c, const struct link *l, double force)
 {
 	double *push = c->push.at;
@@ -53,7 +53,7 @@ LANE_INLINE void push_add(struct chain *c, const struct link *l, double force)
 		c->push.at[l->floor[k]] = fma(l->share[k], force, c->push.at[l->floor[k]]);
 }
 
-/* Force of a contact, of order n, times the square of the step. */
+/* Order n of a contact's force, times the step squared. */
 LANE_INLINE double link_force(const struct chain *c, const struct link *l, int j, int n)
 {
 	const double force = fma(l->dash * (n + 1), c->overlaps[n + 1][j], l->spring * c->overlaps[n][j]);
@@ -77,7 +77,7 @@ LANE_SHARED void modal_add(struct chain *c, int n)
 	}
 }
 
-/* Whether the sides of a link that is followed meet without overlap, at one velocity but for a rounding. */
+/* Whether a link is level: its sides meet with zero overlap and equal velocities to rounding. */
 LANE_INLINE bool link_level(const struct chain *c, const struct link *l)
 {
 	if (l->p != 0)
@@ -106,7 +106,7 @@ static void links_list(struct chain *c)
 	}
 }
 
-/* Sets what acts on floors from outside at order n. */
+/* Sets order n of the external forces on floors (contacts, modal damping), over masses. */
 static void pushes_set(struct chain *c, int n)
 {
 	for (int i = 0; i < c->wide; i += W)
@@ -127,12 +127,12 @@ LANE_INLINE vd story_force(const struct chain *c, int i, int n, bool first)
 	return first ? s + column_load(&c->force, i) : s;
 }
 
-/* what an order of series takes: constants where it is called */
+/* terms of an order of the series: compile-time constants at each call */
 struct order_kind {
 	bool first;  /* order 0: springs have offsets */
 	bool driven; /* orders 0 and 1: the ground moves */
-	bool pushed; /* floors are acted on from outside */
-	bool moving; /* displacements are looked at */
+	bool pushed; /* external forces act on floors */
+	bool moving; /* displacements are needed */
 };
 
 /* Order n + 2 of a vector of displacements, from accelerations of order n. */
@@ -143,7 +143,7 @@ LANE_INLINE void displacements_next(struct chain *c, int n, int i, vd a, double 
 	column_store(&c->displacements[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
 }
 
-/* Order n + 2 of a vector of drifts, from accelerations of order n of its floors, of the vector below and of the ground. */
+/* Order n + 2 of a vector of drifts, from order n of the accelerations of its floors, of the vector below and of the ground. */
 LANE_INLINE void drifts_next(struct chain *c, int n, int i, vd below, vd a, vd base)
 {
 	const vd under = vfma(vbelow(below, a), column_load(&c->inner, i), base);
@@ -152,7 +152,7 @@ LANE_INLINE void drifts_next(struct chain *c, int n, int i, vd below, vd a, vd b
 	column_store(&c->drifts[n + 2], i, (a - resisted) * vsplat(TERM_OF[n].share));
 }
 
-/* Makes order n + 2 of all floors out of those before.
+/* Computes order n + 2 of all floors from the lower orders.
  *
  * Given    ground  of order n, times the square of the step
  */
@@ -173,7 +173,7 @@ LANE_INLINE void floors_next(struct chain *c, int n, double ground, const struct
 	}
 }
 
-/* Magnitudes of what a floor's acceleration is made of at order n, but for contacts, times the square of the step. */
+/* Sum of magnitudes of the terms of a floor's acceleration at order n, times the step squared. */
 static double floor_terms(const struct chain *c, int i, int n)
 {
 	double terms = 0;
@@ -188,9 +188,9 @@ static double floor_terms(const struct chain *c, int i, int n)
 	       fabs(c->mass_damping_step.at[i] * (n + 1) * c->displacements[n + 1].at[i]) + fabs(c->push.at[i]);
 }
 
-/* Floors that touch without overlap, at one velocity, part or press by the difference of their accelerations.  Where that is
- * no more than the rounding of what these are made of it is nothing, and the next derivative decides: else they would part and
- * meet without end.
+/* The sides of a level link separate or close by the difference of their accelerations.  A difference below the rounding
+ * error of its terms is set to zero, and the next derivative decides: otherwise they would separate and meet
+ * endlessly (step.inl: separation_zero_rounding).
  *
  * Given    ground  of order n
  */
@@ -206,8 +206,8 @@ static void link_zero_rounding(struct chain *c, struct link *l, int j, int n, do
 		l->level = false;
 }
 
-/* A story without rate where its branch ends goes on to the next or back by its acceleration: where that is no more than the
- * rounding of what it is made of it is nothing (step.inl: still_zero_rounding). */
+/* A story at rest on a branch boundary leaves it by the sign of its acceleration: one below the rounding error of its
+ * terms is set to zero (step.inl: still_zero_rounding). */
 static void story_zero_rounding(struct chain *c, int i, double ground)
 {
 	const double d = c->d.at[i];
@@ -224,7 +224,7 @@ static void series_start(struct chain *c)
 {
 	const vd h = vsplat(c->dt), h2 = h * h;
 	assert(c->touching.n <= c->n_links &&
-	       c->own.n <= c->n_links); // a list of other links is of a step before
+	       c->own.n <= c->n_links); // else the lists are stale, from an earlier step
 	c->level = false;
 	for (int i = 0; i < c->wide; i += W) {
 		column_store(&c->spring, i, column_load(&c->stiffness, i) * h2);
@@ -249,7 +249,7 @@ static void series_start(struct chain *c)
 	}
 }
 
-/* Orders of overlaps that are integrated in their own right. */
+/* Order n + 2 of overlaps that are integrated as separate variables. */
 LANE_INLINE void overlaps_next(struct chain *c, int n, double ground)
 {
 	if (!c->held && !c->level) {
@@ -272,7 +272,7 @@ LANE_INLINE void overlaps_next(struct chain *c, int n, double ground)
 	}
 }
 
-/* Stories without rate where their branch ends. */
+/* Stories at rest on a branch boundary. */
 static void stories_zero_rounding(struct chain *c, double ground)
 {
 	for (int i = 0; i < c->n; i += W)
@@ -280,7 +280,7 @@ static void stories_zero_rounding(struct chain *c, double ground)
 			story_zero_rounding(c, i + __builtin_ctz(still), ground);
 }
 
-/* One order of all that moves. */
+/* One order of all series. */
 LANE_INLINE void series_order(struct chain *c, int n, double ground, const struct order_kind kind)
 {
 	if (kind.pushed) {
@@ -304,9 +304,9 @@ LANE_INLINE void series_orders(struct chain *c, const bool pushed, const bool mo
 		series_order(c, n, 0, (struct order_kind){false, false, pushed, moving});
 }
 
-/* What some vectors of series do over a step.
+/* Enclosures of some vectors of series over a step.
  *
- * Given    series  coefficients of order n from n strides on
+ * Given    series  coefficients; order n begins at n strides
  */
 LANE_INLINE void enclosures_of(const double *series, size_t stride, int order, struct enclosures *to, int i,
                                const int vectors)
@@ -335,7 +335,7 @@ LANE_INLINE void enclosures_of(const double *series, size_t stride, int order, s
 	}
 }
 
-/* What a column of series does over a step: sums of several vectors at once, as each waits for itself. */
+/* Enclosures of a column of series over a step: several vectors at once, as each sum is one dependency chain. */
 LANE_SHARED void enclosures_make(const struct chain *c, const struct column series[TERMS],
                                  struct enclosures *to)
 {
@@ -349,7 +349,7 @@ LANE_SHARED void enclosures_make(const struct chain *c, const struct column seri
 		enclosures_of(first, LONG, c->order, to, i, 1);
 }
 
-/* What a series does over a step. */
+/* Enclosure of a series over a step. */
 static struct enclosure enclosure_make(const struct power *x, int order)
 {
 	vd u = x->c[0], v = vsplat(0), fourth_max = vsplat(0);
@@ -362,7 +362,7 @@ static struct enclosure enclosure_make(const struct power *x, int order)
 	return (struct enclosure){x->c[0], x->c[1], u, v, fourth_max};
 }
 
-/* Makes the series of a step of c->dt. */
+/* Computes the series and enclosures of a step of length c->dt. */
 static void series_chain(struct chain *c)
 {
 	series_start(c);

@@ -1,4 +1,4 @@
-/* chain_state.inl - a chain as it is marched: floors and links in arrays over which lanes go, its start and its end.
+/* chain_state.inl - the state of a chain: floors and links in arrays that are loaded into lanes; its start and its end.
  *
  * Included by chain.inl alone, once per lane count, first. */
 
@@ -20,10 +20,10 @@ enum {
 	LONG = POUND_CHAIN_FLOORS + ROW, /* floors with room for whole vectors */
 	LINKS = POUND_CHAIN_LINKS + ROW,
 	TERMS = ORDER_HIGH + 1,
-	ENDS = 4, /* floors that a link joins */
+	ENDS = 4, /* most floors of a link */
 };
 
-/* The C library's are calls, and slow ones from code of wide vectors.  What is not a number is passed over. */
+/* fmax and fmin without library calls, which are slow from code with wide vectors; a NAN operand is ignored. */
 static inline double larger(double a, double b)
 {
 	return a < b || a != a ? b : a;
@@ -33,38 +33,38 @@ static inline double smaller(double a, double b)
 	return b < a || a != a ? b : a;
 }
 
-/* a column of floors; lanes go over whole vectors, and what is behind the last floor is 0 */
+/* one number per floor; processed in whole vectors, so entries after the last floor are 0 */
 struct column {
 	alignas(64) double at[LONG];
 };
 
-/* a quantity of every floor over a step: value and rate times the step at both ends, and the bound of its fourth derivative */
+/* a quantity of every floor over a step: value and rate (times the step) at both ends, and a bound of its fourth derivative */
 struct enclosures {
 	struct column u0, v0, u1, v1, fourth_max;
 };
 
-/* one contact, or what may become one */
+/* one contact or possible contact */
 struct link {
 	const struct pound_link *link;
-	int n_ends; /* floors that move */
+	int n_ends; /* number of floors that move */
 	uint16_t floor[ENDS];
 	double weight
-	    [ENDS]; /* > 0: the level moves with the floor, and the force goes against it; right side: < 0 */
+	    [ENDS]; /* left side > 0, right side < 0: overlap = sum of weight u - gap, force on a floor = -weight F */
 	double share[ENDS];         /* weight over the mass of the floor [1/kg] */
 	double spring, dash, force; /* stiffness, damping and offset of its branch, scaled to the step */
 	double inverse_mass;        /* 1 over the effective mass [1/kg] */
 	struct pound_touch at;      /* branch of its force */
 	bool touching;              /* the force acts */
-	bool released;              /* the force is gone before the overlap */
+	bool released;              /* the force fell to zero first: the sides still overlap */
 	bool fresh;                 /* the force has just passed zero */
-	bool own;       /* p and q are integrated in their own right; else they are differences of the floors' */
-	bool held;      /* touching: rigid, and the sides stay together */
-	bool level;     /* without overlap, at one velocity but for a rounding; nothing has decided yet */
-	double p, q;    /* overlap [m] and its rate [m/s] */
-	double impulse; /* of this contact so far [N s] */
-	double begin, speed; /* of this contact: when, and the speed of approach [s], [m/s] */
-	double time;         /* in contact, so far [s] */
-	double counted_time; /* of contacts that count [s] */
+	bool own;            /* p and q are integrated as separate variables; else computed from the floors */
+	bool held;           /* touching: rigid, and the sides stay together */
+	bool level;          /* zero overlap, equal velocities to rounding, and equal derivatives so far */
+	double p, q;         /* overlap [m] and its rate [m/s] */
+	double impulse;      /* of this contact so far [N s] */
+	double begin, speed; /* of this contact: its start and approach speed [s], [m/s] */
+	double time;         /* total time in contact so far [s] */
+	double counted_time; /* ... of the contacts that count [s] */
 	struct pound_counts_scale scale;
 	double *measures;
 };
@@ -75,11 +75,11 @@ struct modal_place {
 };
 
 enum {
-	NOTES = 48,                        /* samples that may hold largest values, at most */
-	KEPT = 6 * 8 * POUND_CHAIN_FLOORS, /* numbers that are kept of these */
+	NOTES = 48,                        /* most noted samples, which may contain largest values */
+	KEPT = 6 * 8 * POUND_CHAIN_FLOORS, /* numbers stored for these */
 };
 
-/* what is kept of a sample: drifts and their rates at its start, elastic centers, bounds inside it */
+/* columns of a noted sample: drifts and their rates at its start, elastic centers, bounds inside it */
 enum {
 	NOTE_D,
 	NOTE_V,
@@ -90,63 +90,65 @@ enum {
 	NOTE_COLUMNS
 };
 
-enum { MODE_ROWS = 2900 }; /* of all vectors of floors: 8 buildings of 50 stories have so many at most */
+enum {
+	MODE_ROWS = 2900
+}; /* rows of shapes of all vectors of floors: most are needed by 8 buildings of 50 stories */
 
-/* modes of all buildings, those of a building in the lanes of its floors, and their motion at samples */
+/* modes of all buildings (as many as floors, in the same lanes), and their motion at samples */
 struct modal_motion {
-	bool can;          /* the chain has modes, and nothing is asked that these do not give */
-	bool moved;        /* since it was entered */
-	int wait, refused; /* samples until it is tried again */
-	int now;           /* place of the sample it is at */
+	bool can;          /* the chain has uncoupled modes, and they give all requested results */
+	bool moved;        /* a sample was passed since modal_enter */
+	int wait, refused; /* samples until the next try; backoff after failed tries */
+	int now;           /* index in at[] of the current sample */
 	int from[LONG / ROW], upto[LONG / ROW],
-	    row[LONG / ROW]; /* modes of a vector of floors, and their rows of shapes */
-	// maps over a sample: of q and v, for q, v, the ground's acceleration and its growth
+	    row[LONG / ROW]; /* per vector of floors: range of modes, and first row of shapes */
+	// maps over a sample: columns for q, v, the ground acceleration and its growth
 	struct column uu, uv, ua, ud, vu, vv, va, vd;
 	struct column per_w2, quasi_static, quasi_static_lag, drift_speed, fourth_max,
 	    fourth_max_rate; /* mode_fill */
 	struct column q, v, q_next, v_next, bound;
-	struct column w2, damping, gain, force, force_rate, force_bound; /* of a mode, and -(c q' + w^2 q) */
+	struct column w2, damping, gain, force, force_rate, force_bound; /* of modes; force: -(c q' + w^2 q) */
 	struct column shift, elastic[2], fourth_drift, fourth_force, top, top_displacement, top_acceleration;
 	struct column reach, displacement_reach,
-	    acceleration_reach; /* bounds inside the sample, where they exceed what is known; else 0 */
+	    acceleration_reach; /* bounds inside the sample where they exceed the largest values so far; else 0 */
 	struct modal_place at[2];
-	int notes, room;      /* samples noted, of so many */
+	int notes, room;      /* noted samples, and their most */
 	int64_t noted[NOTES]; /* sample at the end of each */
-	double kept[KEPT];    /* NOTE_COLUMNS columns of whole vectors of each */
+	double kept[KEPT];    /* NOTE_COLUMNS columns of each */
 	struct pound_modes modes;
 	double overlap[LINKS], rate[LINKS], overlap_next[LINKS],
 	    rate_next[LINKS];         /* of links, at both ends of a sample */
-	double shape[MODE_ROWS][ROW]; /* drifts of shapes */
+	double shape[MODE_ROWS][ROW]; /* drifts of mode shapes */
 };
 
-/* series of a link over such a step: its overlap p, the rate of that, p^1.5 and p^0.25; P = p over the overlap that gives w, P^1.5
- * and P^0.25 where both contacts begin at one instant */
+/* series of a link over a step of nonlinear_contact.inl: overlap p, rate q, p^1.5 and p^0.25; if the contact begins together
+ * with the master's, also P = p over the master's overlap, P^1.5 and P^0.25 */
 struct curve {
-	bool beside; /* it begins with the master */
+	bool beside; /* the contact begins together with the master's */
 	double overlap[TERMS], rate[TERMS], power[TERMS], quarter[TERMS];
 	double ratio[TERMS], ratio_power[TERMS], ratio_quarter[TERMS];
 };
 
-/* the series of a step while the force of a contact is no straight line (nonlinear_contact.inl) */
+/* the series of a step while some contact force is nonlinear (nonlinear_contact.inl) */
 struct curved_step {
 	bool on;       /* the current step is one */
-	bool still;    /* a contact begins without speed: its force waits for a moment */
+	bool still;    /* a contact begins with zero speed: its force is neglected in this short step */
 	bool sampled;  /* the step ends at the end of the interval */
-	int power;     /* dt = w^power ds times the length; 0: the step goes in time */
+	int power;     /* dt = w^power ds times the length; 0: s is time */
 	int master;    /* link whose overlap is w^2 or w^4; -1: none */
 	double length; /* [s], [s m^(-1/2)] or [s m^(-3/4)] */
-	// of such steps alone: from here on
+	// allocated only for chains with nonlinear contacts: from here on
 	double clock[TERMS], gauge[TERMS], w[TERMS], w2[TERMS], w3[TERMS]; /* time, g and powers of w */
 	struct column rates[TERMS], accelerations[TERMS];                  /* of drifts */
 	struct curve links[POUND_CHAIN_LINKS];
 };
 
-/* what links join, for vectors of them; behind the last one are links that are open for good */
+/* the ends of links, in arrays for vectors of links; padded at the end with links that never close */
 struct link_ends {
-	int n[LINKS / ROW];                     /* ends of the links of a row of ROW, at most */
-	bool follows[ENDS][LINKS / ROW];        /* these are on floors that follow each other */
-	uint16_t floor[ENDS][LINKS];            /* any where a link has fewer */
-	double weight[ENDS][LINKS], gap[LINKS]; /* 0 where it has fewer; [m] */
+	int n[LINKS / ROW];                     /* most ends of the ROW links of a row */
+	bool follows[ENDS][LINKS / ROW];        /* their floors are consecutive: one load instead of a gather */
+	uint16_t floor[ENDS][LINKS];            /* arbitrary if a link has fewer ends */
+	double weight[ENDS][LINKS], gap[LINKS]; /* 0 if a link has fewer ends; [m] */
 };
 
 /* some of the links, ascending */
@@ -158,21 +160,20 @@ struct link_list {
 struct chain {
 	const struct pound_chain_task *task;
 	struct pound_chain_result *result;
-	int n, wide; /* floors, and as many as whole vectors have */
+	int n, wide; /* number of floors, and that rounded up to whole vectors */
 	int n_links, wide_links;
-	int n_watched; /* links whose sides do not act on each other; n_links is 0 then */
+	int n_watched; /* number of links that are only recorded and exert no force; n_links is 0 then */
 	int buildings;
-	uint16_t first[POUND_CHAIN_FLOORS + 1]; /* floor of each building, and what follows the last */
-	bool edged;                             /* a law has more than one branch */
-	bool held;                              /* a rigid contact holds in the current step */
-	bool level;                             /* a link is, in the current step */
-	bool modal;                             /* a building has a damping matrix */
-	bool moving;                            /* displacements are looked at */
-	bool curved;                            /* a contact's force may be no straight line */
-	double rate_separated,
-	    damping_separated; /* fastest that floors do without contact, and the damping of that [1/s] */
-	// what does not change: 1/m, the same where there is a floor above, whether there is one below, whether there is not,
-	// the initial stiffness and 1 over it
+	uint16_t first[POUND_CHAIN_FLOORS + 1];   /* lowest floor of each building, then n */
+	bool edged;                               /* a law has more than one branch */
+	bool held;                                /* a rigid contact stays closed in the current step */
+	bool level;                               /* a link is level in the current step (struct link) */
+	bool modal;                               /* a building has a damping matrix */
+	bool moving;                              /* displacements are needed */
+	bool curved;                              /* a contact force may be nonlinear */
+	double rate_separated, damping_separated; /* bounds of frequency and damping without contact [1/s] */
+	// constants: 1/m; 1/m, but 0 for the top floor; inner, base: 1 or 0 with or without a floor below;
+	// pliancy: 1 over the initial stiffness
 	struct column inverse_mass, inverse_above, inner, base, mass_damping, dashpot, initial, pliancy;
 	// branches
 	struct column stiffness, offset, low, high, direction;
@@ -182,23 +183,23 @@ struct chain {
 	struct column top_drift, top_displacement, top_acceleration;
 	struct link link[POUND_CHAIN_LINKS];
 	struct link_list touching, own; /* of the current step */
-	uint8_t own_bits[LINKS / ROW];  /* those of a row of ROW */
+	uint8_t own_bits[LINKS / ROW];  /* the links of `own` as bits, ROW per entry */
 	struct link_ends ends;
 	// interval and step
 	int64_t next;         /* sample at the end of the interval */
 	double ground, slope; /* [m/s2], [m/s3] */
 	double remainder;     /* left of the interval [s] */
-	double pace;          /* <= 1: steps are shorter where a search was unsure */
-	double dt;            /* of the step [s] */
+	double pace;          /* step factor <= 1, below 1 after an unsure search */
+	double dt;            /* length of the step [s] */
 	int order;            /* of its series */
-	int steps;            /* in this interval */
-	// the step: coefficients of springs, dashpots, offsets and damping by mass, scaled to it; forces of contacts over masses
+	int steps;            /* number of steps in this interval */
+	// the step: springs, dashpots, offsets and mass damping, scaled to the step; external forces over masses
 	struct column spring, dash, force, mass_damping_step, push;
-	struct column u, w; /* displacements and velocities at its start */
+	struct column u, w; /* displacements and velocities at the start of the step */
 	struct enclosures drift, displacement, overlap;
 	struct column drifts[TERMS], displacements[TERMS];
 	double overlaps[TERMS][LINKS];
-	double reach; /* longest step, of the links that touch now; 0: to be found [s] */
+	double reach; /* longest step with the links in contact now; 0: to be computed [s] */
 	struct modal_motion modal_motion;
 	// since the last piece that was reported (chain_observer.inl)
 	bool after_event;
@@ -207,7 +208,7 @@ struct chain {
 	double work_in, work_gap, work_low, work_top;
 	struct column work_story; /* on the springs of stories */
 	double work_link[LINKS];
-	struct curved_step curved_step; /* the last one: without such contacts there is no room for its series */
+	struct curved_step curved_step; /* last member: its series are not allocated without nonlinear contacts */
 };
 
 /* ---- links ---- */
@@ -233,7 +234,7 @@ static void link_start(struct link *l, const struct pound_chain_task *task, int 
 	l->p = -link->gap;
 }
 
-/* Puts the ends of all links where vectors find them. */
+/* Fills the arrays of link ends. */
 static void link_ends_start(struct chain *c)
 {
 	struct link_ends *x = &c->ends;
@@ -257,7 +258,7 @@ static void link_ends_start(struct chain *c)
 	}
 }
 
-/* Sum over the floors of a link of its weights and what is in a column. */
+/* Sum of weight times column entry over the floors of a link. */
 LANE_INLINE double link_sum(const struct link *l, const double *column)
 {
 	double sum = fma(l->weight[0], column[l->floor[0]], 0.0);
@@ -271,9 +272,9 @@ LANE_INLINE double link_sum(const struct link *l, const double *column)
 
 /* Bound of the rates of a chain whose highest frequency is w and whose largest damping is c.
  *
- * A rate r has r^2 + c' r + k' = 0 with c' <= c and k' <= w^2: it swings with at most w, or dies away with at most c.  Where damping
- * is near critical, derivative n of a free motion is up to n times as large: steps are shorter by the 16th root of that, as
- * those of the pair (next_step.inl: contact_reach).
+ * A rate r has r^2 + c' r + k' = 0 with c' <= c and k' <= w^2: it oscillates with at most w, or decays with at most c.  Near critical
+ * damping, derivative n of a free motion is up to n times as large: steps are shorter by the 16th root of that factor, as
+ * for pairs (next_step.inl: contact_reach).
  */
 static double rate_of(double w, double c)
 {
@@ -284,7 +285,7 @@ static double rate_of(double w, double c)
 	return larger(w / share, c);
 }
 
-/* Bound of what a building's modal damping gives a floor's velocity, over its mass [1/s]. */
+/* Bound of a floor's modal damping coefficient over its mass: row sum of the damping matrix [1/s]. */
 static double modal_bound(const struct pound_chain_floor *floor, int stories)
 {
 	double sum = 0;
@@ -293,7 +294,7 @@ static double modal_bound(const struct pound_chain_floor *floor, int stories)
 	return sum / floor->mass;
 }
 
-/* The floors of the building that begins with one. */
+/* Number of floors of the building that begins with a floor. */
 static int building_stories(const struct pound_chain_task *task, int first)
 {
 	int n = 1;
@@ -304,7 +305,7 @@ static int building_stories(const struct pound_chain_task *task, int first)
 
 /* Bound of the largest eigenvalue of springs, or of dashpots, over masses: the largest sum of a row of M^(-1/2) K M^(-1/2).
  *
- * Given    column  of the floors: of what a story has
+ * Given    column  stiffness or dashpot of each story
  * Source   Gershgorin 1931
  */
 static double building_bound(const struct chain *c, const struct column *column, int first, int stories)
@@ -322,7 +323,7 @@ static double building_bound(const struct chain *c, const struct column *column,
 	return bound;
 }
 
-/* Fastest that a chain does without contact: all laws are stiffest at the start. */
+/* Bounds the rates of a chain without contact: all laws are stiffest on their first branch. */
 static void chain_rates(struct chain *c)
 {
 	const struct pound_chain_task *task = c->task;
@@ -418,13 +419,13 @@ static void chain_start(struct chain *c, const struct pound_chain_task *task,
 	            (task->asked & (POUND_CHAIN_DISPLACEMENTS | POUND_CHAIN_ACCELERATIONS | POUND_CHAIN_ENERGY));
 }
 
-/* a column of drifts, and what floors do */
+/* a column of drifts, and the column of its sums over the stories below */
 struct summed {
 	const double *drift;
 	double *floor;
 };
 
-/* Sums over the stories below: what floors do, from drifts.  A sum waits for itself, so two buildings go side by side. */
+/* Sums drifts over the stories below into floor values; two buildings at once, as each sum is one long dependency chain. */
 LANE_INLINE void floors_sum(const struct chain *c, const int n, const struct summed *x)
 {
 	for (int b = 0; b < c->buildings; b += 2) {
@@ -466,13 +467,13 @@ static double chain_kinetic(const struct chain *c)
 	return sum;
 }
 
-/* Drift at which a story's force is 0 on the way back. */
+/* Drift at which a story unloads to zero force. */
 static double story_residual(const struct chain *c, int i)
 {
 	return pound_law_residual(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);
 }
 
-/* What the law of a story has taken for good. */
+/* Energy dissipated by a story's law. */
 static double story_lost(const struct chain *c, int i)
 {
 	return c->work_story.at[i] - pound_law_given_back(&c->task->floors[i].story, &c->laws[i], c->d.at[i]);

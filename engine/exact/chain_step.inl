@@ -2,7 +2,7 @@
  *
  * Included by chain.inl alone, once per lane count, after chain_energy.inl. */
 
-/* Longest step while some links touch: contacts on one floor add up.
+/* Longest step while some links touch; stiffnesses of contacts on one floor add up.
  *
  *   rate of the contacts^2 <= the largest sum over a link's floors of |w|/m times the sum over these floors' links of |w| K
  */
@@ -34,7 +34,7 @@ static double reach_touching(struct chain *c)
 	return rate > 0 ? POUND_TERMS_REACH[ORDER_HIGH] / rate : DBL_MAX;
 }
 
-/* The interval that ends at a sample. */
+/* Sets the current interval to the one that ends at a sample. */
 static void interval_set(struct chain *c, int64_t next)
 {
 	const double *a = &c->task->ground[next];
@@ -43,7 +43,7 @@ static void interval_set(struct chain *c, int64_t next)
 	c->remainder = c->task->time_step;
 }
 
-/* Chooses the next step. */
+/* Chooses the length and order of the next step. */
 static void step_choose(struct chain *c)
 {
 	if (c->reach == 0)
@@ -53,7 +53,7 @@ static void step_choose(struct chain *c)
 	bool level = false;
 	for (int k = 0; k < c->own.n; k++)
 		level |= link_level(c, &c->link[c->own.link[k]]);
-	// derivatives by the share of a step that is a power of two have the same roundings with and without contact
+	// with a power of two as step length, scaled derivatives round equally with and without contact
 	if (level)
 		c->dt = ldexp(1, ilogb(c->dt));
 	c->order = c->dt * POUND_TERMS_REACH[ORDER_HIGH] <= c->reach * POUND_TERMS_REACH[ORDER_LOW] ? ORDER_LOW
@@ -62,7 +62,7 @@ static void step_choose(struct chain *c)
 
 /* ---- contacts ---- */
 
-/* What a side of a link moves by: magnitudes, of which its velocity has the roundings. */
+/* Magnitudes of the terms of a side's motion, for the rounding error of its velocity. */
 static struct pound_counts_body side_of(const struct chain *c, const struct link *l, int side)
 {
 	struct pound_counts_body b = {.ground = c->ground};
@@ -82,7 +82,7 @@ static struct pound_counts_body side_of(const struct chain *c, const struct link
 	return b;
 }
 
-/* A contact has ended, or the signal has in it. */
+/* Records a contact that has ended, or is still open at the end of the signal. */
 static void contact_over(struct chain *c, struct link *l)
 {
 	double *m = l->measures;
@@ -143,7 +143,7 @@ static void contact_ends(struct chain *c, struct link *l)
 	c->reach = 0;
 }
 
-/* The force of a contact is at an edge of its branch. */
+/* Moves a contact at an edge of its branch to the next branch, or ends it. */
 static void link_leave(struct chain *c, struct link *l, enum pound_edge edge)
 {
 	if (edge == POUND_EDGE_LOW && l->at.on.low == 0) {
@@ -158,7 +158,7 @@ static void link_leave(struct chain *c, struct link *l, enum pound_edge edge)
 	c->reach = 0;
 }
 
-/* A story's law goes on to its next branch; from here the edge is exact. */
+/* Moves a story's law to its next branch; the drift is set exactly to the edge. */
 static void story_leave(struct chain *c, int i, enum pound_edge edge, bool moved)
 {
 	if (edge == POUND_EDGE_REVERSAL) {
@@ -173,7 +173,7 @@ static void story_leave(struct chain *c, int i, enum pound_edge edge, bool moved
 
 /* ---- the step ---- */
 
-/* Value and rate of a vector of floors at a share of the step: kinematics_at (series.inl), out of memory. */
+/* Value and rate of a vector of floors at a fraction of the step: kinematics_at (series.inl) on series in memory. */
 LANE_INLINE struct kinematics column_kinematics(const struct column series[TERMS], int order, int i, vd t)
 {
 	const vd t2 = t * t;
@@ -188,12 +188,12 @@ LANE_INLINE struct kinematics column_kinematics(const struct column series[TERMS
 	return (struct kinematics){vfma(odd, t, even), vfma(2.0 * t, vfma(odd_rate, t, even_rate), odd)};
 }
 
-/* overlaps at a share of a step, their rates and their integrals up to there, by shares of it */
+/* overlaps at a fraction of the step, their rates, and their means up to there; rates by the fraction of the step */
 struct overlaps_at {
 	struct column p, rate, area;
 };
 
-/* Where the links of the current step are at a share of it. */
+/* Overlaps of the integrated links at a fraction of the step. */
 LANE_INLINE void overlaps_place(const struct chain *c, double time, struct overlaps_at *at)
 {
 	const vd t = vsplat(time);
@@ -216,7 +216,7 @@ LANE_INLINE void overlaps_place(const struct chain *c, double time, struct overl
 	}
 }
 
-/* Where the floors and links are at a share of the step. */
+/* Moves floors and links to a fraction of the step. */
 static void step_arrive(struct chain *c, double time)
 {
 	const vd per_dt = vsplat(1 / c->dt);
@@ -257,7 +257,7 @@ static void step_arrive(struct chain *c, double time)
 	c->remainder = larger(c->remainder - elapsed, 0);
 }
 
-/* Largest values on the way of a step to a share of it. */
+/* Updates the largest values up to a fraction of the step. */
 static void step_tops(struct chain *c, double time)
 {
 	const unsigned asked = c->task->asked;
@@ -293,7 +293,7 @@ static void event_apply(struct chain *c, const struct first *first)
 	}
 }
 
-/* A link that begins to be looked at closely has its overlap from the floors. */
+/* Initializes the overlap of a link that begins to be integrated, from its floors. */
 static void overlap_enter(struct chain *c, const struct first *first)
 {
 	if (first->event != EVENT_BEGINS || c->link[first->index].own)
@@ -303,7 +303,7 @@ static void overlap_enter(struct chain *c, const struct first *first)
 	l->q = link_sum(l, c->w.at);
 }
 
-/* One step: to the next event, or as far as it was meant to go. */
+/* One step: to the next event, or by the planned length. */
 static void chain_step(struct chain *c)
 {
 	if (c->moving)

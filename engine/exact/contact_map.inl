@@ -2,11 +2,11 @@
  *
  * Included by exact.inl alone, once per lane count: the columns of a map are made side by side in lanes.
  *
- * 1. Pressed on each other the bodies are one linear system: over a substep, a fraction of a radian of the contact's own
+ * 1. In contact the bodies are one linear system: over a substep, a fraction of a radian of the contact's own
  *    frequency, its map is a power series.
- * 2. Doubled maps are maps over eight times as many substeps each, by doubling, kept as what they add to the state:
- *    nothing small is lost beside 1.
- * 3. A bound proves that bodies stay pressed over a doubled map however often the contact swings within.
+ * 2. Doubled maps each cover eight times as many substeps as the one before, by doubling; stored as increments of the
+ *    state, so that small terms are not lost beside 1.
+ * 3. A bound proves that bodies stay in contact over a doubled map, however often the overlap oscillates within.
  *
  * Included by exact.inl after series.inl. */
 
@@ -21,13 +21,13 @@
 enum {
 	N = POUND_CONTACT_INPUTS,
 	MOVED = CONTACT_IMPULSE +
-	        1, /* rows of what a map adds: the state's, in the order of the inputs, and the impulse's */
+	        1, /* rows of increments: of the state, in the order of the inputs, and of the impulse */
 	DOUBLINGS =
-	    3, /* from a doubled map to the next; more where as many as there may be would not reach a sample */
+	    3, /* from a doubled map to the next; more if POUND_DOUBLED_MAPS maps would not reach a sample */
 	DOUBLED_RATIO = 1 << DOUBLINGS,
 };
 
-/* How the motion is split into the bodies' common one and that of the contact: see doubled_bounds. */
+/* Constants that split the motion into the bodies' common motion and the overlap's own: see doubled_bounds. */
 static void split_fill(double split[N], const struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
@@ -46,7 +46,7 @@ static void split_fill(double split[N], const struct simulation *sim)
 	split[SPLIT_SUBSTEPS] = 1;
 }
 
-/* Overlap by what presses the bodies on each other, once it does not swing. */
+/* Static overlap per closing acceleration. */
 static double yield_of(const double split[N])
 {
 	return 1 / (split[SPLIT_OMEGA] * split[SPLIT_OMEGA]);
@@ -66,9 +66,9 @@ static void rates_add(double rates[POUND_GAUSS][2][N], int n, int column, vd w, 
 	}
 }
 
-/* A linear form of the inputs becomes one of the inputs with the overlap off its equilibrium, p - g/W^2, for p.
+/* Rewrites a linear form of the inputs in terms of the overlap off its equilibrium, p - g/W^2, instead of p.
  *
- * Where nothing is lost while the contact does not swing, a quadratic form then has small terms, not a small difference of
+ * When there is little loss, as without oscillation, the quadratic form then has small terms, not a small difference of
  * large ones, whose error would grow with every doubling.
  */
 static void form_off(double row[N], const double split[N])
@@ -82,7 +82,7 @@ static void form_off(double row[N], const double split[N])
 	row[5] += closing;
 }
 
-/* What the dashpots of both bodies and of the contact take over a substep, per mass of the left body, as a quadratic form of
+/* Energy loss in the dashpots of both bodies and the contact over a substep, per mass of the left body, as a quadratic form of
  * the inputs with the overlap off its equilibrium: the integral of m c v^2 by quadrature, exact to rounding. */
 static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const double split[N],
                       const struct simulation *sim)
@@ -109,14 +109,14 @@ static void loss_fill(double loss[N][N], double rates[POUND_GAUSS][2][N], const 
  *
  * Given    sim    its bodies on their branches, contact
  * Returns  map    rows of POUND_CONTACT_INPUTS coefficients
- *          work   what an account of energy needs beside them; NULL: there is none
+ *          work   forms for the energy balance; NULL: not requested
  *
  *   ub'' = -cb ub' - kb ub - (Ab + Db t/h) - s (K p + C p')        s = 1 for the left body, -m1/m2 for the right
  *   p''  = (c2 - c1) ub' + (k2 - k1) ub - co p' - ko p - (1 + m1/m2) (K p + C p') + Ap + Dp t/h
  *
  * with the other body (o) at the distance of gap and overlap from the base (b).  The error of a cubic is at most 1/288 of
  * the largest fourth derivative (POUND_CUBIC_ERROR), which by linearity is at most the sum of the inputs' magnitudes times
- * that of their own columns.
+ * the fourth derivatives of their columns.
  */
 static void substep_fill(struct pound_contact_map *map, struct pound_contact_work *work,
                          const struct simulation *sim)
@@ -181,7 +181,7 @@ static void substep_fill(struct pound_contact_map *map, struct pound_contact_wor
 
 /* ---- doubled maps ---- */
 
-/* The map over twice as long: with s the state, f the forcing and d its growth over the length,
+/* Doubles the length of a map: with s the state, f the forcing and d its growth over the length,
  *
  *   R s + R s',   s' = s + X s + F f + D d      in terms of s, f and 2 d, for each row R of (X F D) and the impulse's
  */
@@ -203,7 +203,7 @@ static void map_double(double row[][N])
 	}
 }
 
-/* From the inputs over a length to those over the next, with the overlap off its equilibrium or as it is. */
+/* Matrix from the inputs of one map to the inputs of the next of equal length; off: the overlap is off its equilibrium. */
 static void inputs_next(double next[N][N], const double row[][N], bool off)
 {
 	const double *split = row[CONTACT_SPLIT];
@@ -222,9 +222,9 @@ static void inputs_next(double next[N][N], const double row[][N], bool off)
 	}
 }
 
-/* An account of energy over twice as long.
+/* Doubles the length of the energy forms.
  *
- * Given    row   of the map over the length
+ * Given    row   rows of the map over the single length
  */
 static void work_double(struct pound_contact_work *work, const double row[][N])
 {
@@ -256,31 +256,31 @@ static void work_double(struct pound_contact_work *work, const double row[][N])
 	}
 }
 
-/* What proves that nothing happens over a doubled map of length h.
+/* Bounds that prove that no event occurs over a doubled map of length h.
  *
  * With the slow coordinate w = ub - s/(1 + m1/m2) p of the bodies' common motion
  *
  *   p'' + G p' + W^2 p = g,   g = (c2 - c1) w' + (k2 - k1) w + Ap + Dp t/h       w'' = -cw w' - kw w - Aw + kp p + kq p'
  *
- * where the damping, stiffness and forcing with the index w are the means of both bodies by mass.  What presses them goes
- * up or down by r = (g1 - g0)/h along a straight line, off which it is b, and the overlap follows this line with a lag:
+ * where the damping, stiffness and forcing with the index w are means of both bodies weighted by mass.  The closing acceleration g
+ * follows a straight line of slope r = (g1 - g0)/h up to a deviation b, and the overlap follows this line with a lag:
  *
  *   e = p - (g0 + r t)/W^2 + G r/W^4      e'' + G e' + W^2 e = b
  *
- * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Pressed bodies have |p'| <= g/W and p <= 2 g/W^2: what holds
- * up to a first release proves that there is none.  So f = |kp p + kq p'| is bounded.  The rest of w'' differs from its
- * mean, (w1' - w0')/h less that of f, by its own growth at most: with F = 1/(1 - h (cw + kw h))
+ * V = (e'^2 + (W e - b/W)^2)^1/2 grows by |b'|/W at most.  Bodies in contact have |p'| <= g/W and p <= 2 g/W^2: bounds that hold
+ * up to a first release prove that there is none.  So f = |kp p + kq p'| is bounded.  The remainder of w'' differs from its
+ * mean, (w1' - w0')/h less the mean of f, by at most its own growth: with F = 1/(1 - h (cw + kw h))
  *
  *   A2 = F (|w1' - w0'|/h + 2 f + h kw |w'| + |Dw|) bounds w'', and so B = h^2 |g''| is bounded:
  *
- * b is at most B/8, and |b'| adds up to at most B/2.  With that W V is bounded, and the bodies stay pressed while the line
+ * b is at most B/8, and |b'| integrates to at most B/2.  With these W V is bounded, and the bodies stay in contact while the line
  * less its lag, W V and B/8 is positive.  Meanwhile |p'| is at most (W V + |r|/W)/W, |p''| (1 + G/W) W V, and kp p grows by
- * kp (W V + |g1 - g0|)/W^2, which is no more than the terms in g have with W V + |r|/W + |g1 - g0| in its place.  So bodies
- * that rest have small bounds, however far they are pressed, and those that are pressed ever more go steadily.
- * w - kq int e is slower than w: of its fourth derivative the error of the cubic of w is made, to which 4 |kq| h |e| is
- * added for the rest, e with B/8 for what int p misses a cubic by.  Its roundings are those of the
- * way, that is of h w' and of the terms of h^2 w''; where w itself is looked at, sustained_contact() adds that of it: bodies that creep
- * may go less far than that, and their velocity still has a sign.
+ * kp (W V + |g1 - g0|)/W^2, which is no more than the terms in g with W V + |r|/W + |g1 - g0| in place of g.  So bodies at
+ * rest have small bounds, however large the contact force, and under a growing contact force their velocity keeps its sign.
+ * w - kq int e is slower than w: its fourth derivative bounds the error of the cubic of w, to which 4 |kq| h |e| is
+ * added for the remainder, e with B/8 for the deviation of int p from a cubic.  The rounding allowance is that of the
+ * increment, that is of h w' and of the terms of h^2 w''; for w itself sustained_contact() adds the rounding of w: creeping bodies
+ * may move less than that, and their velocity still has a sign.
  */
 static void doubled_bounds(struct pound_contact_map *map, const struct simulation *sim, double substeps)
 {
@@ -303,7 +303,7 @@ static void doubled_bounds(struct pound_contact_map *map, const struct simulatio
 	for (int j = 0; j < N; j++)
 		map->closing[j] = dc * (map->row[CONTACT_V][j] - share * map->row[CONTACT_Q][j]) +
 		                  dk * (map->row[CONTACT_U][j] - share * map->row[CONTACT_P][j]) + (j == 7);
-	// twice for the difference of rates, which is one of large numbers
+	// twice, for the cancellation in the difference of rates
 	const double rounded[N] = {2 * fabs(dk), 2 * fabs(dc), 1, 0, 0, 1};
 	const double lost[N] = {2 * kw * h * h, h, 0, 0, h * h, 2 * fabs(share) * h * h};
 	for (int j = 0; j < N; j++) {
@@ -335,8 +335,8 @@ static void doubled_fill(struct pound_doubled_maps *doubled, const struct pound_
 	}
 }
 
-/* Chooses the doubled maps of a simulation: of one substep, and of as many as lead to a whole sample, as far as the bodies' own
- * rates allow.  A few substeps a sample go as fast one by one. */
+/* Chooses the lengths of a simulation's doubled maps: one substep, then lengths up to a whole sample, as far as the bodies' own
+ * rates allow.  Few substeps per sample are as fast one by one. */
 static void doubled_choose(struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
@@ -346,7 +346,7 @@ static void doubled_choose(struct simulation *sim)
 		return;
 	sim->doubled_ratio = DOUBLED_RATIO;
 	if (first >
-	    0x1p53) // no double counts them one by one: bodies pressed on each other do not reach the end of them
+	    0x1p53) // a double cannot count them one by one: contact_ready ends such a simulation as chatter
 		return;
 	while (ldexp(1, doublings * (POUND_DOUBLED_MAPS - 1)) < first)
 		doublings++;
@@ -363,27 +363,27 @@ static void doubled_choose(struct simulation *sim)
 	}
 }
 
-/* A row of a map applied to its inputs, in pairs: the terms need not wait for each other. */
+/* A row of a map applied to its inputs; summed in pairs to shorten the dependency chain. */
 static double row_at(const double row[N], const double x[N])
 {
 	double slow = row[6] * x[6] + row[7] * x[7], force = row[4] * x[4] + row[5] * x[5];
 	return (row[0] * x[0] + row[1] * x[1] + slow) + (row[2] * x[2] + row[3] * x[3] + force);
 }
 
-/* The greater and 2^1/2 - 1 of the lesser are above the root of both squares, and keep their scale.  Not as close as sustained_contact() has
- * it: this only chooses a doubled map, for one simulation at a time. */
+/* Upper bound of (x^2 + y^2)^1/2 without overflow: the larger plus 2^1/2 - 1 of the smaller.  Coarser than in sustained_contact():
+ * here it only chooses a doubled map. */
 static double length_above(double x, double y)
 {
 	double a = fabs(x), b = fabs(y);
 	return a < b ? b + 0.4143 * a : a + 0.4143 * b;
 }
 
-/* How a contact swings at the start of a doubled map: W p', W^2 p - g, and g. */
+/* Oscillation of the overlap at the start of a doubled map: W p', W^2 p - g, and g. */
 struct swing {
 	double rate, off, closing;
 };
 
-/* Whether bodies in contact are bound to stay pressed over a doubled map: see doubled_bounds.
+/* Whether bodies are proved to stay in contact over a doubled map: see doubled_bounds.
  *
  * Given    x     inputs;  bound  magnitudes of w, w', g, w1' - w0', and of x from there on
  *          h     length of the doubled map [s]
@@ -407,7 +407,7 @@ static bool stays_in_contact(const struct pound_contact_map *map, const double x
 	       (change < 0 ? closing1 : closing);
 }
 
-/* The longest doubled map that bodies in contact are bound to stay pressed over; NULL: there is none. */
+/* The longest doubled map over which bodies are proved to stay in contact; NULL: none. */
 static const struct pound_contact_map *doubled_longest(struct simulation *sim,
                                                        struct pound_contact_maps *maps)
 {
@@ -424,7 +424,7 @@ static const struct pound_contact_map *doubled_longest(struct simulation *sim,
 	double closing = split[SPLIT_DAMPING] * rate + split[SPLIT_STIFFNESS] * w + in[5];
 	const struct swing start = {
 	    .rate = omega * x->q, .off = omega * omega * x->p - closing, .closing = closing};
-	// without overlap and rate bodies alike stay so, over any doubled map
+	// identical bodies with zero overlap and rate stay so over any doubled map
 	const bool still = sim->traits & TRAIT_ALIKE && x->p == 0 && x->q == 0;
 	if (!still && !(split[SPLIT_PHASE_LEAD] * length_above(start.rate, start.off) < closing))
 		return NULL;
@@ -447,7 +447,7 @@ static const struct pound_contact_map *doubled_longest(struct simulation *sim,
 	return NULL;
 }
 
-/* The maps of contact on the branches that the bodies are on. */
+/* The contact maps of the bodies' current branches. */
 static struct pound_contact_maps *contact_maps_find(struct simulation *sim)
 {
 	if (sim->common)
@@ -468,7 +468,7 @@ static struct pound_contact_maps *contact_maps_find(struct simulation *sim)
 	return &sim->own_maps[m];
 }
 
-/* Contact on branches that the bodies have not been pressed on since they entered them. */
+/* First contact since the bodies entered their current branches: finds or fills its maps. */
 LANE_SHARED void contact_maps_enter(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
@@ -488,8 +488,8 @@ LANE_SHARED void contact_maps_enter(struct simulation *sim)
 	sim->traits = alike ? sim->traits | TRAIT_ALIKE : sim->traits & ~(unsigned)TRAIT_ALIKE;
 }
 
-/* Gives a copy of a simulation what maps of contact that has, but for the doubled maps: it is still on its first branches,
- * so there is one pair of branches at most that it has maps of. */
+/* Copies the substep map of a simulation, but no doubled maps, to its copy: it is still on its first branches,
+ * so it has maps of at most one pair of branches. */
 static void contact_maps_copy(struct simulation *to, const struct simulation *from)
 {
 	if (!from->contact_maps)
@@ -501,7 +501,7 @@ static void contact_maps_copy(struct simulation *to, const struct simulation *fr
 	maps->has_doubled = false;
 }
 
-/* Finds the map again that a copy goes on with. */
+/* Restores the contact map of a resumed copy. */
 static void contact_maps_resume(struct simulation *sim, enum pound_stage stage)
 {
 	struct pound_contact_maps *maps = sim->contact_maps;
@@ -514,11 +514,11 @@ static void contact_maps_resume(struct simulation *sim, enum pound_stage stage)
 	sim->contact_map = &maps->doubled->map[sim->doubled];
 }
 
-/* Gets everything ready for whole substeps of contact: the longest map over which nothing is known to happen.
+/* Prepares whole substeps of contact: chooses the longest map over which no event can occur.
  *
  * Given    sim    in contact, with whole substeps left
- * Returns  value  STAGE_SUSTAINED: sim->contact_map is a doubled map; STAGE_CONTACT: it is a substep; STAGE_CHATTER: above 2^53
- *                 substeps in an interval there is no end to them
+ * Returns  value  STAGE_SUSTAINED: sim->contact_map is a doubled map; STAGE_CONTACT: it is the substep map; STAGE_CHATTER: more
+ *                 than POUND_STEPS_LIMIT steps in this interval
  */
 static enum pound_stage contact_ready(struct simulation *sim)
 {
@@ -528,7 +528,7 @@ static enum pound_stage contact_ready(struct simulation *sim)
 		contact_maps_enter(sim);
 	struct pound_contact_maps *maps = sim->contact_maps;
 	if (sim->doubled_ratio > 0) {
-		sim->x.rounds = sim->doubled_ratio; // a doubled map goes as far as the next longer one
+		sim->x.rounds = sim->doubled_ratio; // applied until it has covered the next longer map's length
 		sim->contact_map = sim->n_doubled > 0 ? doubled_longest(sim, maps) : NULL;
 		if (sim->contact_map)
 			return STAGE_SUSTAINED;
@@ -537,10 +537,10 @@ static enum pound_stage contact_ready(struct simulation *sim)
 	return STAGE_CONTACT;
 }
 
-/* Accounts for the energy of substeps that a simulation went over.
+/* Adds the energy balance of the substeps that a simulation has passed by one map.
  *
  * Given    sim     its map and interval
- *          x, end  inputs of the map, and the state behind it
+ *          x, end  inputs of the map, and the state after it
  *          ground  acceleration at the start [m/s2];  rise: its growth over one substep
  * Returns  sim     work, as energy.inl adds it: the ground's is -m (a (u1 - u0) + d (u1 - mean u)), with a growing by d
  */

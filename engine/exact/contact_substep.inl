@@ -1,12 +1,12 @@
-/* contact_substep.inl - whole substeps of contact by precomputed exact maps, those of sustained contact several at once.
+/* contact_substep.inl - whole substeps of contact by precomputed exact maps; many at once in sustained contact.
  *
- * The cubic through both ends, widened by the bound of its error, proves that nothing lies between: no release, no edge of a law,
- * no new largest displacement.  A lane in which it cannot prove that stays in front of the substep.
+ * The cubic through both ends, widened by its error bound, proves that no event lies between: no release, no edge of a law,
+ * no new largest displacement.  A lane without this proof stops before the substep.
  *
- * Included by exact.inl after free_motion.inl, whose cubics and edges it has. */
+ * Included by exact.inl after free_motion.inl, whose cubics and edges it uses. */
 
-/* how far contact has come: base u, v, overlap p, q; largest displacements of the base and the other body; maps
- * until another is asked for; samples behind the interval */
+/* state in contact: base u, v, overlap p, q; largest displacements of the base and the other body; rounds: maps
+ * until another one is chosen; left: samples after the interval */
 struct contact_state {
 	vd x[4], top[2], impulse, ground, rise, substeps, rounds, left;
 };
@@ -16,19 +16,19 @@ struct linear_form {
 	vd x[4], ground, rise, force;
 };
 
-/* the base body and the overlap in lanes, and the map of either */
+/* the base body and the overlap in lanes, and their maps */
 struct contact_lanes {
 	struct contact_state at;
 	struct edges base, other; /* where a lane has a law of more than one branch */
 	struct linear_form moved[CONTACT_IMPULSE + 1];
-	struct linear_form error;                           /* of a substep, of the magnitudes */
-	vm alike;                                           /* lanes of TRAIT_ALIKE */
-	vd doubled[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS]; /* of a doubled map: its bounds and how it is split */
+	struct linear_form error;                           /* substep: error bound, a form of magnitudes */
+	vm alike;                                           /* lanes with TRAIT_ALIKE */
+	vd doubled[CONTACT_MAP_ROWS][POUND_CONTACT_INPUTS]; /* doubled map: its bounds and CONTACT_SPLIT */
 };
 
-/* The form that a row of a map is of the state and the ground motion.
+/* Converts a row of a map to a form of the state and the ground motion.
  *
- * Given    magnitudes  the row is one of these
+ * Given    magnitudes  the row applies to magnitudes of the inputs
  */
 LANE_INLINE struct linear_form form_of(const vd row[POUND_CONTACT_INPUTS], const struct lanes *g,
                                        bool magnitudes)
@@ -67,7 +67,7 @@ LANE_INLINE void contact_inputs(vd x[POUND_CONTACT_INPUTS], const struct lanes *
 	x[7] = g->gap_drive * rise;
 }
 
-/* Where the other body is, which stands off the base by gap and overlap.
+/* Displacement of the other body, from the base, gap and overlap.
  *
  * Given    off  side * gap
  */
@@ -92,7 +92,7 @@ LANE_INLINE void contact_move(const struct lanes *g, struct contact_lanes *s, co
 		at->x[j] = vselect(moves, end[j], at->x[j]);
 }
 
-/* Lanes whose bodies touch without overlap and stay so, as they go the same way: neither presses the other nor leaves it.
+/* Lanes of identical bodies with zero overlap and rate: they move together without contact force.
  *
  * Given    p, q  overlap and its rate
  */
@@ -101,10 +101,10 @@ LANE_INLINE vm contact_still(const struct contact_lanes *s, vd p, vd q)
 	return s->alike & vequal(p, vsplat(0)) & vequal(q, vsplat(0));
 }
 
-/* An overlap that nothing else presses: it dies away, down to nothing.
+/* The overlap of identical bodies: without closing acceleration it decays, and is set to zero once negligible.
  *
  * Given    bound  magnitudes of the state;  error  of both cubics
- * Returns  end    0 where nothing is left;  value  error of the overlap's cubic: there, by its own columns alone
+ * Returns  end    0 where negligible;  value  error of the overlap's cubic: for identical bodies from its own columns only
  */
 LANE_INLINE vd contact_fades(const struct lanes *g, const struct contact_lanes *s, const vd bound[4],
                              vd error, vd end[4])
@@ -118,10 +118,10 @@ LANE_INLINE vd contact_fades(const struct lanes *g, const struct contact_lanes *
 
 /* One substep of contact.
  *
- * Given    going   lanes that are to go on
- * Returns  s       those of them in which nothing can happen, at the end of the substep
+ * Given    going   lanes to advance
+ * Returns  s       the lanes in which no event is possible, at the end of the substep
  *          edge    lanes in which an edge of a branch may be reached
- *          value   those, and others in which something may happen inside it
+ *          value   lanes in which any event is possible inside the substep
  */
 LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,
                                vm going, vm *edge)
@@ -148,7 +148,7 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	vm risk = ~vless(zero, least);
 	if (scope->forced) {
 		vd force = vfma(g->release / third, cubic_slowest(x[3], &p, third, vsplat(1)), vmin(least, x[2]));
-		// a lane whose contact ends with its overlap is not to notice what its neighbours' does
+		// only for lanes whose contact ends at zero force
 		risk |= ~vless(zero, force) & vless(zero, g->release);
 	}
 	if (scope->seldom)
@@ -158,7 +158,7 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	                  .v = b.v - side * p.v,
 	                  .b1 = other_body(b.b1, p.b1, side, off),
 	                  .b2 = other_body(b.b2, p.b2, side, off)};
-	// the magnitudes it is made of are those of base, overlap and gap
+	// its rounding is that of base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
 	if (scope->edged)
@@ -178,19 +178,19 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	return risk;
 }
 
-/* What the bounds of a doubled map make of the roundings of a body at rest, over its displacement: a few dozen.  Less than this is no
- * motion, and none is looked for. */
+/* Rounding allowance of a doubled map's bounds over a body's displacement: for a body at rest they amount to a few dozen eps.  Smaller
+ * motions are ignored. */
 static const double SUSTAINED_ROUNDING = 64 * DBL_EPSILON;
 
-/* Lanes in which a body's velocity keeps its sign over many substeps, but for times in which it goes back by less than the rounding
- * of where it is: pressed from rest by a load that grows, it is at rest once in every swing, and rounding would decide.
+/* Lanes in which a body's velocity keeps its sign over many substeps, except for reversals by less than the rounding of its
+ * displacement: under a load that grows from rest, the velocity reaches 0 once per contact oscillation, and rounding would decide.
  *
- * All rates are times a third of the doubled map.  Where the swing is ahead of the slow motion by a small share of itself it is so for
- * 2 acos(1 - share) of its radians, for a share up to 1 at most pi share^1/2.
+ * All rates are times a third of the doubled map.  Where the oscillation's rate exceeds the slow rate by a small share of itself, it does
+ * so for 2 acos(1 - share) radians, for a share up to 1 at most pi share^1/2.
  *
- * Given    along   of the slow motion, at least;  swing: of the swing, at most;  error: of both
- *          radian  time of the swing's radian, over a third of the doubled map
- *          where   magnitude of its displacement
+ * Given    along   lower bound of the slow rate;  swing: upper bound of the oscillation's rate;  error: of both
+ *          radian  time per radian of the oscillation, over a third of the doubled map
+ *          where   magnitude of the body's displacement
  */
 LANE_INLINE vm sustained_steady(vd along, vd swing, vd error, vd radian, vd where)
 {
@@ -201,9 +201,9 @@ LANE_INLINE vm sustained_steady(vd along, vd swing, vd error, vd radian, vd wher
 
 /* Lanes in which a body may have a new largest displacement over many substeps.
  *
- * Given    u, end     at both ends
- *          low, high  its motion lies between, by the cubic of the slow part of it
- *          steady     lanes of sustained_steady(): nothing lies beyond the ends
+ * Given    u, end     displacement at both ends
+ *          low, high  bounds of the displacement in between, by the cubic of the slow motion
+ *          steady     lanes of sustained_steady(): the displacement stays between its end values
  */
 LANE_INLINE vm sustained_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 {
@@ -211,14 +211,14 @@ LANE_INLINE vm sustained_peaks(vd u, vd end, vd low, vd high, vm steady, vd top)
 	return vless(most, vfma(vsplat(-SUSTAINED_ROUNDING), most, vmax(high, -low))) & ~steady;
 }
 
-/* Lanes in which an edge of its branch may be reached.
+/* Lanes in which a body may reach an edge of its branch.
  *
- * A body that creeps goes less far than the rounding of where it is: no bound of its velocity could show that it goes on, so that
- * none is asked for, and at the end of its branch it may be beyond by as much.  Its velocity at the start still counts: who
- * goes back where a branch only goes on must leave that now, however slowly it goes, or what it goes adds up from doubled map to
- * doubled map.
+ * A creeping body moves less than the rounding of its displacement: no velocity bound could prove its direction, so none is
+ * required, and it may exceed the end of its branch by that rounding.  Its velocity at the start still counts: a body that
+ * moves against its branch's direction must leave the branch now, however slow, or the motion would accumulate over many
+ * doubled maps.
  *
- * Given    speed  its velocity at the start, or any multiple of it
+ * Given    speed  the body's velocity at the start, times any positive factor
  */
 LANE_INLINE vm sustained_edges(vd end, vd low, vd high, vd speed, vm steady, const struct edges *x)
 {
@@ -229,12 +229,12 @@ LANE_INLINE vm sustained_edges(vd end, vd low, vd high, vd speed, vm steady, con
 	       vless(x->direction * speed, vsplat(0));
 }
 
-/* Many substeps of contact, in which it may swing often, by a doubled map: see doubled_bounds in contact_map.inl.
+/* Many substeps of contact, with any number of oscillations of the overlap, by a doubled map: see doubled_bounds in contact_map.inl.
  *
- * Given    going  lanes that are to go on
- * Returns  s      those of them in which nothing can happen, at their end
+ * Given    going  lanes to advance
+ * Returns  s      the lanes in which no event is possible, at the end of the map
  *          edge   lanes in which an edge of a branch may be reached
- *          value  those, and others in which something may happen meanwhile
+ *          value  lanes in which any event is possible meanwhile
  */
 LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s, const struct scope *scope,
                                  vm going, vm *edge)
@@ -261,12 +261,12 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 	const vd change = closing1 - closing, drift = change * (per_omega / (g->substep * substeps));
 	vd a = vabs(vfma(omega, x[3], -drift));
 	vd c = vabs(vfma(omega * omega, x[2], vfma(split[SPLIT_TWO_ZETA], drift, -closing)));
-	// the root of both squares, in their scale, raised by no more than its rounding: a coarser bound would stay above the
-	// largest displacement of a contact that swings without end, and refuse every doubled map
+	// hypotenuse, scaled against underflow, raised only by its rounding: in an undamped oscillation a coarser bound would always
+	// exceed the largest displacement so far, and refuse every doubled map
 	vd larger = vmax(vmax(a, c), vsplat(DBL_MIN)), lesser = vmin(a, c) / larger;
 	vd swung = vsplat(1 + 4 * DBL_EPSILON) * larger * vsqrt(vfma(lesser, lesser, one));
 	vd grown = vabs(change) + vabs(drift), curvature, swing;
-	// once by all that presses, and then by what of it swings: see doubled_bounds in contact_map.inl
+	// first with the whole closing acceleration, then only its varying terms: see doubled_bounds in contact_map.inl
 	for (int round = 0; round < 2; round++) {
 		curvature = contact_row(s->doubled[DOUBLED_CURVATURE], bound);
 		swing = vfma(vsplat(0.5), curvature, swung);
@@ -283,7 +283,7 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 	vd b1 = vfma(third, rate, w), b2 = vfma(-third, rate1, w1);
 	vd reach = vfma(vsplat(4 * DBL_EPSILON), bound[0], error);
 	vd high = vmax(vmax(b1, b2), vmax(w, w1)) + reach, low = vmin(vmin(b1, b2), vmin(w, w1)) - reach;
-	// b2 - b1 by what the doubled map adds: creeping bodies go less far than the rounding of where they are
+	// b2 - b1 from the map's increments: creeping bodies move less than the rounding of their displacements
 	vd way0 = third * rate, way1 = third * rate1;
 	vd mean = vfma(-split[SPLIT_BASE], gone[2], gone[0]) - (way0 + way1);
 	vd creep = yield * change * vsplat(1.0 / 3), scaled_rate = third * swing * per_omega,
@@ -295,7 +295,7 @@ LANE_INLINE vm sustained_contact(const struct lanes *g, struct contact_lanes *s,
 		vd u = i ? other_body(x[0], x[2], g->side, off) : x[0];
 		vd u1 = i ? other_body(end[0], end[2], g->side, off) : end[0];
 		vd mid = i ? vfma(share, still, -off) : share * still;
-		// the line that the overlap follows goes along
+		// rate of the slow motion, including the line that the overlap follows
 		vd more = share * creep, speed = way0 + more, way = vselect(vless(speed, zero), -one, one);
 		vd along = vmin(vmin(way * speed, way * (way1 + more)), way * (mean + more));
 		vm steady = sustained_steady(along, size * scaled_rate, vsplat(1.0265) * error, per_omega / third,
@@ -316,7 +316,7 @@ LANE_INLINE struct edges edges_select(vm mask, struct edges a, struct edges b)
 	                      vselect(mask, a.direction, b.direction)};
 }
 
-/* Sustained contact into lanes, and back. */
+/* Converts left and right body to base and other body, and back. */
 LANE_INLINE void contact_load(struct contact_lanes *s, const struct lanes *g, vd rise, vd left_samples,
                               const struct scope *scope)
 {

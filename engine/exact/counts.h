@@ -1,7 +1,7 @@
-/* counts.h - which contacts count: those that did more to the bodies than roundings do.
+/* counts.h - which contacts count: those whose effect on the velocities exceeds rounding errors.
  *
- * The exact solver and the others ask this where a contact ends.  What does not count is left out of the
- * number of contacts, of their time and of what the first of them was; forces and impulses stay as they are. */
+ * All solvers check this when a contact ends.  A contact that does not count is excluded from the number of
+ * contacts, the contact time and the first contact; forces and impulses are unaffected. */
 #ifndef COUNTS_H
 #define COUNTS_H
 
@@ -11,32 +11,32 @@
 
 #include "engine/pound.h"
 
-/* Roundings that velocities may be off by, of what they are made of.  An acceleration has half of one in each of its two
- * factors, in their product and in its sums: 4 times eps at most with those of w^2 and 2 xi w in a stiffness and a damping.
- * A contact without losses turns the speed round that they give, which makes its impulse twice that, and the speed that the
- * bodies part with is it once more: 12, and the next power of two is taken. */
+/* Rounding errors of velocities, in units of eps times the magnitudes of their terms.  An acceleration has half an eps in each of
+ * two factors, in their product and in its sums: at most 4 eps, with those of w^2 and 2 xi w in a stiffness and a damping.
+ * A contact without losses reverses a speed of that size, so its impulse is twice as large, and the separation speed
+ * adds it once more: 12, rounded up to a power of two. */
 static const double POUND_COUNTS_ROUNDINGS = 16;
 
-/* what a body's motion is made of where a contact ends */
+/* terms of a body's motion at the end of a contact */
 struct pound_counts_body {
 	double u, v;              /* [m], [m/s] */
 	double stiffness, offset; /* of the branch it is on, per mass [1/s2], [m/s2] */
 	double damping;           /* c/m [1/s] */
-	double ground;            /* what the ground gives it [m/s2] */
+	double ground;            /* acceleration from the ground motion [m/s2] */
 };
 
 struct pound_counts {
 	struct pound_counts_body body[POUND_OSCILLATORS];
 	double time; /* since the start [s] */
 	double
-	    blur; /* of who has the overlap as the difference of two displacements: the speed that its terms would give [m/s] */
+	    blur; /* speed scale of rounding, for solvers that compute the overlap as a difference of two displacements [m/s] */
 	double
-	    steps; /* that the contact took, each with a rounding of its own; the march's only in the bodies: one a sample */
-	double changed; /* relative speed by the contact's impulse, and that with which the bodies part  [m/s] */
+	    steps; /* steps of the contact, each with its own rounding; for the exact solver, samples: it rounds only the bodies' motion */
+	double changed; /* relative speed by the contact's impulse, plus the separation speed  [m/s] */
 };
 
-/* Velocity that could be made of the magnitudes of all terms of a body's acceleration, in the time that it takes the body to
- * forget them or in all that has gone by: a velocity has no more than its roundings, and they fade with exp(-c t/2). */
+/* Velocity scale of rounding: |v| plus the magnitudes of all terms of the acceleration times the decay time 2/c, or the time since
+ * the start if that is shorter: rounding errors of a velocity decay with exp(-c t/2). */
 static inline double pound_counts_speed(const struct pound_counts_body *b, double time)
 {
 	const double memory = b->damping * time > 2 ? 2 / b->damping : time;
@@ -45,14 +45,14 @@ static inline double pound_counts_speed(const struct pound_counts_body *b, doubl
 	return fabs(b->v) + terms * memory;
 }
 
-/* what roundings are measured by, so far; 0, 0 at the start */
+/* the largest velocity scale so far; 0, 0 at the start */
 struct pound_counts_scale {
 	double most;  /* largest speed that a sum gave [m/s] */
 	double speed; /* largest sum of the bodies' speeds for which it was taken [m/s] */
 };
 
-/* Whether a contact counts whatever its sum is: the sum was taken for bodies as fast as these, and the contact changed their speeds
- * by 2^-12 of it, a billion roundings. */
+/* Quick check that a contact counts without a new sum: the scale covers bodies as fast as these, and the contact changed their
+ * speeds by 2^-12 of it, a billion rounding errors. */
 static inline bool pound_contact_plain(double changed, double speed, const struct pound_counts_scale *scale)
 {
 	return speed <= scale->speed && changed > 0x1p-12 * scale->most;
@@ -64,11 +64,11 @@ static inline bool pound_contact_plain(double changed, double speed, const struc
  *
  *   (1 + m1/m2) I/m1 + |q| > 16 eps (1 + steps) max sum_i (|v_i| + (|k u| + |r0| + c |v| + |a|)_i min(t, 2/c_i))
  *
- * with the impulse I and the rate q of the overlap at the end, the maximum over the contacts so far that were not plain.  Bodies
- * that roundings bring together have little of both.  Those that only graze have a small impulse but part as fast as they came,
- * and those that are pressed may end at rest but have an impulse, to which every step adds the roundings of the bodies.
+ * with the impulse I and the rate q of the overlap at the end; the maximum is over the contacts so far without the quick check.  If
+ * rounding brings bodies together, both terms are small.  Grazing bodies have a small impulse but separate as fast as they
+ * approached; bodies in sustained contact may end at rest but have an impulse, to which every step adds rounding errors.
  *
- * Valid    Also after the motion has died away: what is left of it is nothing beside what it was.
+ * Valid    Also after the motion has decayed: the scale keeps the largest value.
  * Test     unit_counts
  */
 static inline bool pound_contact_counts(const struct pound_counts *c, struct pound_counts_scale *scale)

@@ -1,12 +1,12 @@
-/* energy.inl - the work done in an event step: what the ground puts in and where it goes.
+/* energy.inl - the energy balance of an event step: input by the ground, dissipated and stored energy.
  *
- * Included by exact.inl alone, once per lane count; only simulations that are accounted for pay for it.
+ * Included by exact.inl alone, once per lane count; used only by simulations with TRAIT_ACCOUNTED.
  *
  * Included by exact.inl after contact_map.inl. */
 
 /* Adds the work of a step, per mass of the left body [m2/s2].
  *
- * Given    s       the step's series;  time: the share of it that was gone
+ * Given    s       the step's series;  time: the fraction of the step that was taken
  * Returns  g       work_in: by the ground; work_gap + work_low: by the dashpots, on the laws' springs and on the contact,
  *                  less that by the ground, summed with the rounding of each addition carried on (Kahan 1965);
  *                  work_top: the largest work_in or kinetic energy so far
@@ -28,7 +28,7 @@ static void energy_add(struct lanes *g, const struct series *s, vd time, struct 
 			out = vfma(weight * mass[i] * v, vfma(g->body[i].damping, v, spring), out);
 			moving = vfma(0.5 * mass[i] * v, v, moving);
 		}
-		// a ground that takes back within the step what it has given leaves little at the end
+		// the largest energy may occur inside the step, if the ground takes it back before the end
 		top = vmax(top, moving);
 		if (!scope.touching)
 			continue;

@@ -1,29 +1,28 @@
-/* exact.inl - the exact event-driven march, many simulations side by side in lanes.
+/* exact.inl - the exact event-driven solver, W simulations at a time in SIMD lanes.
  *
- * Between events a pair of oscillators is linear and the ground motion a straight line, so:
- * 1. whole samples without contact, eight of them before their proofs, and whole substeps of contact, go by precomputed exact maps,
- *    where a bound proves that nothing lies inside (free_motion.inl, contact_substep.inl);
- * 2. what they cannot prove is done by power series in time, cut at the first root of a guard (step.inl);
- * 3. simulations wait in one queue for each kind of step; one that fills a batch gives the next, which is carried into
- *    lanes, goes on until half of it is done with that kind of step (of free motion: a quarter), and is carried out to the next
- *    queues;
- * 4. samples that may hold a largest displacement are noted, and looked into at the end where none was larger;
- * 5. behind a step, lanes with the same future are sent on one after the other: a branch that every lane takes at random
- *    costs more than what it decides;
- * 6. simulations of one scene, of laws of one branch, make their maps once, and their constants stay in lanes from batch to
+ * Between events a pair of oscillators is linear and the ground motion is piecewise linear in time, so:
+ * 1. whole samples without contact (eight are moved first, then proved) and whole substeps of contact are advanced by
+ *    precomputed exact maps, where a bound proves that no event lies inside (free_motion.inl, contact_substep.inl);
+ * 2. intervals without such a proof are integrated by power series in time, cut at the first root of a guard (step.inl);
+ * 3. simulations wait in one queue per kind of step; a queue that fills a batch is taken next.  The batch is loaded into lanes,
+ *    runs until half of its lanes (in free motion: a quarter) need another kind of step, and is stored to the next queues;
+ * 4. samples that may contain the largest displacement are noted, and examined at the end if no larger one was found;
+ * 5. after a step, the lanes are sent on in groups with the same outcome: one unpredictable branch per lane would cost
+ *    more than the work it selects;
+ * 6. simulations of one scene whose laws have one branch share their maps, and their constants stay in lanes from batch to
  *    batch;
- * 7. tasks that differ in nothing but their laws are one simulation until a first one of them may yield (shared_start.inl);
- * 8. one that is observed goes through the same steps, and stops at every event and, in going contact, at every sample; its observer
- *    hears of every sample, or of those that may hold a largest u_1 - u_2.
- * A simulation's bits depend on itself alone: not on its lane, its neighbours or the lane count. */
+ * 7. tasks that differ only in their laws run as one simulation until the first of them may yield (shared_start.inl);
+ * 8. an observed simulation takes the same steps, but stops at every event and, during contact, at every sample; its observer
+ *    is called at every sample, or only at those that may contain the largest u_1 - u_2.
+ * The bits of a simulation's result do not depend on its lane, the other lanes or the lane count. */
 #include "engine/exact/task.h"
 
 #include <assert.h>
 #include <string.h>
 
 enum {
-	ORDER_LOW = 13,  /* of the series of a displacement while separated */
-	ORDER_HIGH = 17, /* while touching */
+	ORDER_LOW = 13,  /* order of displacement series while separated */
+	ORDER_HIGH = 17, /* ... in contact */
 };
 
 // clang-format off
@@ -42,24 +41,25 @@ enum {
 // clang-format on
 
 enum {
-	CONTACT_ROUNDS = 2, /* moves of going contact before it is asked who is left: no branch foresees that */
+	CONTACT_ROUNDS =
+	    2, /* substeps between two counts of the lanes still in contact: that branch is unpredictable */
 };
 
 /* ---- whole samples without contact ---- */
 
-/* the ground motion in front of each lane */
+/* the remaining ground motion of each lane */
 struct ahead {
-	const double *ground[W]; /* from where it started */
-	int64_t gone;            /* samples that lanes still in free motion have gone since */
-	unsigned moving;         /* lanes that still do */
-	vd samples;              /* that are left */
-	unsigned edged;          /* lanes that stopped where an edge may be reached */
-	unsigned observed;       /* lanes of TRAIT_OBSERVED */
+	const double *ground[W]; /* its samples, from the start of the batch */
+	int64_t gone;            /* samples passed since then by the lanes still in free motion */
+	unsigned moving;         /* lanes still in free motion */
+	vd samples;              /* samples left */
+	unsigned edged;          /* lanes that stopped because a branch edge may be reached */
+	unsigned observed;       /* lanes with TRAIT_OBSERVED */
 };
 
-/* The next ROW samples of the lanes in free motion, as far as there are any.
+/* Loads the next ROW ground samples of the lanes in free motion, or as many as are left.
  *
- * Returns  value  lanes that have fewer
+ * Returns  value  lanes with fewer than ROW left
  */
 LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, vd ground[ROW])
 {
@@ -68,7 +68,7 @@ LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, v
 	unsigned whole = moving & ~vbits(vless(ahead->samples, vsplat(ROW)));
 	for (int l = 0; l < W; l++) {
 		at[l] = whole >> l & 1 ? ahead->ground[l] + ahead->gone : work->beyond[l];
-		// the line that the next ROW end in: that in which they begin has come with these
+		// prefetch the cache line in which the next ROW end; the line in which they begin is loaded here
 		__builtin_prefetch((const void *)((uintptr_t)at[l] + (2 * ROW - 1) * sizeof(double)));
 	}
 	double samples[W];
@@ -81,11 +81,11 @@ LANE_INLINE unsigned ground_load(struct work *work, const struct ahead *ahead, v
 	return moving & ~whole;
 }
 
-/* Notes the largest displacements that lanes may have inside a sample of a stretch.
+/* Notes that the largest displacement of body i may lie inside a sample of a stretch.
  *
- * Given    s, r   the stretch and the sample in it;  gone: samples before that since the batch began
- *          noted  lanes whose body i may have it there
- * Returns  value  lanes that have no room for another
+ * Given    s, r   the stretch and the sample in it;  gone: samples before it since the batch began
+ *          noted  the lanes concerned
+ * Returns  value  lanes without room for another note
  */
 LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stretch *s, int r, unsigned noted,
                                 int64_t gone)
@@ -111,9 +111,9 @@ LANE_SHARED unsigned peaks_keep(const struct batch *b, int i, const struct stret
 	return full;
 }
 
-/* What the observers of lanes have seen at most, a row for each side.
+/* Largest u_1 - u_2 and u_2 - u_1 reported to the observers of lanes so far.
  *
- * Returns  value  lanes whose observers are to hear of every sample
+ * Returns  value  lanes whose observers want every sample
  */
 LANE_INLINE unsigned observers_most(const struct batch *b, unsigned lanes, vd most[2])
 {
@@ -130,7 +130,7 @@ LANE_INLINE unsigned observers_most(const struct batch *b, unsigned lanes, vd mo
 	return every;
 }
 
-/* Reports to the observers of lanes the samples of free motion in a stretch. */
+/* Reports the samples of free motion in a stretch to the lanes' observers. */
 LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahead,
                                  const struct observed_stretch *stretch)
 {
@@ -166,10 +166,10 @@ LANE_SHARED void stretch_observe(const struct batch *b, const struct ahead *ahea
 	}
 }
 
-/* Free motion over ROW samples at most, and not beyond the end of any lane: each as far as it has no event.
+/* Advances each lane in free motion by up to ROW samples: to its first possible event or its last sample.
  *
- * Returns  g       their states there
- *          ahead   what is left in front of each, and those still in free motion, with samples left
+ * Returns  g       the states there
+ *          ahead   samples left, and the lanes still in free motion with samples left
  */
 LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct ahead *ahead, struct lanes *g,
                               const struct free_map maps[2], const struct scope *scope)
@@ -205,7 +205,7 @@ LANE_INLINE void free_stretch(struct work *work, const struct batch *b, struct a
 	ahead->moving = on & more;
 }
 
-/* Given    g, maps, scope  what does not change meanwhile */
+/* Free motion of a batch, until a quarter of its lanes have stopped; g, maps and scope hold the constants. */
 LANE_INLINE void free_batch(struct work *work, const struct batch *b, enum pound_stage stage, struct lanes *g,
                             const struct free_map maps[2], struct scope scope)
 {
@@ -270,7 +270,7 @@ LANE_INLINE void free_lanes(struct work *work, struct batch *b, enum pound_stage
 	while (common && batch_again(work, b));
 }
 
-/* Of what is observed all is in memory that others know of: code of its own, so that other lanes keep theirs in registers. */
+/* Observed batches have their own copy of the code: pointers to their state escape, which would keep it out of registers. */
 LANE_SHARED void free_single_observed(struct work *work, struct batch *b)
 {
 	free_lanes(work, b, STAGE_FREE_SINGLE, KIND_EDGED, true);
@@ -290,7 +290,7 @@ LANE_INLINE void free_run(struct work *work, struct batch *b, enum pound_stage s
 
 /* ---- whole substeps of contact ---- */
 
-/* Accounts for the energy of the lanes that went over a map of some substeps. */
+/* Energy balance of the lanes that were advanced by a map over some substeps. */
 static void contact_account(const struct batch *b, const struct lanes *g, const struct contact_state *from,
                             const struct contact_state *to, vd substeps, unsigned going)
 {
@@ -307,13 +307,13 @@ static void contact_account(const struct batch *b, const struct lanes *g, const 
 	}
 }
 
-/* the ground motion at both ends of each lane's interval, and at the end of the next one, and where that stands */
+/* ground acceleration at both ends of each lane's interval and at the end of the next one, and the address of the latter */
 struct samples {
 	vd before, ground, next;
 	vu at;
 };
 
-/* Given    left  samples behind the interval */
+/* Returns  left  samples after the interval */
 LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 {
 	struct samples s;
@@ -335,9 +335,9 @@ LANE_INLINE struct samples samples_of(const struct batch *b, vd *left)
 	return s;
 }
 
-/* Lanes at a sample enter the next interval.
+/* Moves lanes at a sample into the next interval.
  *
- * Given    share  of an interval that a substep is
+ * Given    share  length of a substep over the interval's
  */
 LANE_INLINE void samples_next(struct samples *s, struct contact_state *x, vm entering, vd substeps, vd share)
 {
@@ -351,14 +351,14 @@ LANE_INLINE void samples_next(struct samples *s, struct contact_state *x, vm ent
 	s->next = vgather(s->at);
 }
 
-/* Lanes that keep their doubled map: it has room before the next sample, and none longer has behind the one just entered. */
+/* Lanes that keep their doubled map: it fits before the next sample; on entering an interval, no longer one fits. */
 LANE_INLINE vm doubled_stays(const struct contact_lanes *s, vm entered)
 {
 	vd substeps = s->doubled[CONTACT_SPLIT][SPLIT_SUBSTEPS];
 	return ~vless(s->at.substeps, substeps) & ~(entered & vless(substeps, s->at.substeps));
 }
 
-/* Carries one row of the maps into lanes: of one map, where it is common to all. */
+/* Loads one row of the maps into lanes; a common map is broadcast. */
 LANE_INLINE void contact_row_load(vd row[POUND_CONTACT_INPUTS], const double *const map[W], int r,
                                   bool common)
 {
@@ -370,7 +370,7 @@ LANE_INLINE void contact_row_load(vd row[POUND_CONTACT_INPUTS], const double *co
 		row[j] = vsplat(map[0][r * POUND_CONTACT_INPUTS + j]);
 }
 
-/* Carries the maps into lanes: of a substep, or of a doubled map. */
+/* Loads the substep maps or doubled maps into lanes. */
 LANE_INLINE void contact_maps_load(struct contact_lanes *s, const struct lanes *g, const double *const map[W],
                                    enum pound_stage stage, bool common)
 {
@@ -388,7 +388,7 @@ LANE_INLINE void contact_maps_load(struct contact_lanes *s, const struct lanes *
 	s->error = form_of(row, g, true);
 }
 
-/* Given    g, s  what does not change meanwhile, and of g the row PRESS */
+/* Contact of a batch, until half of its lanes have stopped; g and s hold the constants, g also ROW_CONTACT. */
 LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum pound_stage stage,
                                struct lanes *g, struct contact_lanes *s, struct scope scope)
 {
@@ -430,7 +430,7 @@ LANE_INLINE void contact_batch(struct work *work, const struct batch *b, enum po
 			s->at.rounds = vselect(going, s->at.rounds - one, s->at.rounds);
 			gone |= vequal(s->at.rounds, zero) & going;
 			going &= ~ended & ~gone;
-			if (seldom) // a sample is an instant
+			if (seldom) // an observed lane stops at every sample
 				going &= ~(entered & watched);
 			if (stage == STAGE_SUSTAINED)
 				going &= doubled_stays(s, entered);
@@ -495,7 +495,7 @@ LANE_INLINE void contact_run(struct work *work, struct batch *b, enum pound_stag
 	}
 }
 
-/* What is asked for or happens seldom goes one way for all laws. */
+/* The rare cases (struct scope: seldom) share one copy of the code for all laws. */
 static void contact_seldom(struct work *work, struct batch *b, enum pound_stage stage)
 {
 	const struct scope scope = {.edged = true, .seldom = true};
@@ -532,7 +532,7 @@ LANE_INLINE struct event_lanes event_lanes_of(const struct batch *b, enum pound_
 	return e;
 }
 
-/* Given    g  what does not change meanwhile */
+/* One step of a batch by power series; g holds the constant rows. */
 LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage stage, struct lanes *g,
                             enum kind kind)
 {
@@ -552,7 +552,7 @@ LANE_INLINE void step_batch(struct work *work, struct batch *b, enum pound_stage
 	lanes_store(event, events);
 	lanes_store(left, vfma(g->substeps, g->substep, g->remainder));
 	lanes_store(speed, g->q);
-	// the work done is kept of whole steps only, and an event is an instant
+	// not finished in the same step: energy is summed over whole steps only, and an observer is called at every event
 	if (b->traits & (TRAIT_ACCOUNTED | TRAIT_OBSERVED))
 		changes &= ~batch_trait(b, TRAIT_ACCOUNTED | TRAIT_OBSERVED);
 	if (vany(changes)) {
@@ -593,7 +593,7 @@ LANE_INLINE void step(struct work *work, struct batch *b, enum pound_stage stage
 	while (common && batch_again(work, b));
 }
 
-/* What is left of a sample. */
+/* Finishes the current sample interval in one step where no event can occur. */
 LANE_INLINE void finish_interval(struct work *work, struct batch *b, enum pound_stage stage)
 {
 	struct event_lanes e = event_lanes_of(b, stage);
@@ -605,7 +605,7 @@ LANE_INLINE void finish_interval(struct work *work, struct batch *b, enum pound_
 	if (e.scope.paired)
 		lanes_fill(&g, b, ROW_RIGHT);
 	event_finish(&g, &e, vmask(batch_lanes(b)));
-	// nothing is to be taken back: they have not moved
+	// nothing to undo in the lanes that leave: they have not moved
 	const unsigned leaving = e.scope.edged ? batch_leaving(b, e.decided) : 0;
 	lanes_empty(&g, b, ROW_STATE);
 	lanes_empty(&g, b, ROW_STEP);
@@ -615,15 +615,15 @@ LANE_INLINE void finish_interval(struct work *work, struct batch *b, enum pound_
 			member_leave(work, sim, stage);
 			continue;
 		}
-		if (observed(sim) && sim->x.remainder == 0) // else it has stayed
+		if (observed(sim) && sim->x.remainder == 0) // else it has not moved
 			sim->unobserved += sim->x.dt;
 		send(work, sim, simulation_next(sim));
 	}
 }
 
-/* ---- the march ---- */
+/* ---- the solver ---- */
 
-/* the stages' steps: of laws of one branch, of others, and of simulations of one scene */
+/* the step of each stage and kind of batch */
 #define STEP(name, ...)                                  \
 	static void name(struct work *work, struct batch *b) \
 	{                                                    \
@@ -667,7 +667,7 @@ static_assert(sizeof(struct lanes) == W * sizeof(struct state_rows), "rows are d
  *
  * Given    tasks    (n)
  *          scratch  POUND_EXACT_SCRATCH bytes, 64-byte aligned
- *          stop     looked at between batches: when it is set the results are not to be used; NULL: never
+ *          stop     polled between batches: once it is set the results are invalid; NULL: never stopped
  * Returns  results  (n); status POUND_CHATTER where a task ended early, POUND_OVERFLOW where its motion is not finite
  *
  * Source   model.md 1
@@ -681,7 +681,7 @@ void POUND_EXACT(const struct pound_task *tasks, struct pound_task_result *resul
 	struct queue *queue = &work->queues[0];
 	while (!pound_stopped(stop)) {
 		tasks_start(work);
-		// as long as it fills a batch: its code is in the cache
+		// stay with the queue as long as it fills a batch: its code is in the cache
 		for (int stage = 0; stage < STAGES && queue->n < W; stage++)
 			if (work->queues[stage].n > queue->n)
 				queue = &work->queues[stage];

@@ -1,9 +1,9 @@
 /* free_motion.inl - whole samples without contact, by precomputed exact maps.
  *
- * Included by exact.inl, once per lane count, and by its test.  A map takes a simulation over its sample at once; the cubic
- * through both ends, widened by the bound of its error, proves that nothing lies between: no contact, no edge of a law, no new
- * largest displacement.  A lane in which it cannot prove that stays in front of it; but a sample that
- * may hold nothing but a largest displacement is moved over, and noted.
+ * Included by exact.inl, once per lane count, and by its test.  A map advances a simulation over one sample; the cubic
+ * through both ends, widened by its error bound, proves that no event lies between: no contact, no edge of a law, no new
+ * largest displacement.  A lane without this proof stops before the sample; but if only a largest
+ * displacement is possible, the sample is passed and noted.
  *
  * Included by exact.inl after simulation.inl. */
 
@@ -18,11 +18,11 @@ struct lanes {
 	POUND_ROWS(vd)
 };
 
-/* Largest rate * time of a map over a sample; above the shorter one it takes more terms. */
+/* Largest rate * time of a map over a sample; above REACH_MAP_SHORT the series takes more terms. */
 static const double REACH_MAP = 2, REACH_MAP_SHORT = 0.8;
 
 /* terms of order n of psi, the response to an initial velocity of 1, and of its derivative times h; sums over the orders:
- * psi and h psi', the integrals of psi once and twice, and what bounds the fourth derivative of each column of the map */
+ * psi and h psi', the integrals of psi once and twice, and bounds of the fourth derivative of each column of the map */
 struct map_series {
 	double u, w;
 	double psi, rate, once, twice;
@@ -46,15 +46,15 @@ LANE_INLINE void map_order(struct map_series *s, double ch, double kh, int n)
 	s->w = w;
 }
 
-/* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, and what bounds the error of the cubic through its ends.
+/* Exact map of u'' + c u' + k u = -(a + d t/h) over one sample h, and error bounds of the cubic through its ends.
  *
  * Given    k, c, h   [1/s2], [1/s], [s]   h (c + k^1/2) <= REACH_MAP
  * Returns  map       columns for u, v, a, d
  *
  * All columns come from the power series of psi, the response to an initial velocity of 1: the response to an initial
- * displacement is psi' + c psi, those to constant and growing forcing are its integrals.  By linearity the fourth derivative
- * is at most the sum of the inputs' magnitudes times that of their own columns, and these are at most the sums of their
- * terms' magnitudes; 16 roundings of the displacement at either end are added.
+ * displacement is psi' + c psi, the responses to constant and growing forcing are its integrals.  By linearity the fourth derivative
+ * is at most the sum of the inputs' magnitudes times the fourth derivatives of their columns, which are at most the sums of
+ * their terms' magnitudes; 16 rounding errors of the displacement at either end are added.
  */
 static void map_fill(struct pound_map *map, double k, double c, double h)
 {
@@ -79,7 +79,7 @@ struct cubic {
 	vd u, v, b1, b2, error;
 };
 
-/* One body's map over one whole sample, from displacement, velocity and the ground motion at both ends; its error. */
+/* One body's map over a whole sample, from displacement, velocity and ground acceleration at both ends; its error bound. */
 struct free_map {
 	vd uu, uv, u_force, u_ground, u_next;
 	vd vu, vv, v_force, v_ground, v_next;
@@ -112,7 +112,7 @@ LANE_INLINE struct free_map free_map_of(const struct lanes *g, int i)
 	                         .error_ground = g->map[i].ef * drive};
 }
 
-/* Where a body is one whole sample later.
+/* State of a body one whole sample later.
  *
  * Given    f             its map
  *          ground, next  acceleration at both ends [m/s2]
@@ -125,9 +125,9 @@ LANE_INLINE struct kinematics free_move(const struct free_map *f, struct kinemat
 	                           .v = vfma(f->vv, from.v, vfma(f->vu, from.u, v_force))};
 }
 
-/* What is known of the way there.
+/* The motion in between, as a cubic with an error bound.
  *
- * Given    f      its map
+ * Given    f      the body's map
  *          forcing  bound of |ground| + |next - ground|
  *          third  of the sample
  */
@@ -142,7 +142,7 @@ LANE_INLINE struct cubic cubic_of(const struct free_map *f, struct kinematics fr
 	                      .error = vfma(f->error_u, vabs(from.u), vfma(f->error_v, vabs(from.v), error))};
 }
 
-/* the ends of a body's branch: displacements, and the way in which it must go (0: either) */
+/* the ends of a body's branch: displacements, and the required sign of the velocity (0: any) */
 struct edges {
 	vd low, high, direction;
 };
@@ -162,12 +162,12 @@ LANE_INLINE vm cubic_peaks(const struct cubic *f, vd top)
 	return vless(vmax(top, vabs(f->u)), cubic_reach(f));
 }
 
-/* How far a third of a sample or substep takes a body one way at least, by its velocity anywhere inside.
+/* Lower bound of a body's velocity in one direction over a sample or substep, times a third of it.
  *
  * Given    v    velocity at the start;  f: the free motion from there
- *          way  +1, -1
+ *          way  direction: +1, -1
  *
- * The velocity's control points times h/3 are its own at the ends, and b2 - b1 between; what they miss the velocity by is
+ * The velocity's control points times h/3 are the velocity at the ends, and b2 - b1 between; they differ from the velocity by
  * at most sqrt(3)/216 h^3 of the fourth derivative, that is 288 sqrt(3)/648 of the error.
  */
 LANE_INLINE vd cubic_slowest(vd v, const struct cubic *f, vd third, vd way)
@@ -196,18 +196,18 @@ LANE_INLINE struct edges edges_of(const struct lanes *g, int i)
 	return (struct edges){g->body[i].low, g->body[i].high, g->body[i].direction};
 }
 
-/* samples of free motion of lanes, one after the other */
+/* ROW consecutive samples of free motion, in lanes */
 struct stretch {
-	vd ground[ROW + 1]; /* acceleration at them [m/s2] */
+	vd ground[ROW + 1]; /* ground acceleration at the samples [m/s2] */
 	struct kinematics at[2][ROW + 1];
-	vd top[2][ROW + 1];    /* the largest displacement up to there */
+	vd top[2][ROW + 1];    /* largest displacement up to each sample */
 	vd bound[2][ROW];      /* of |u| inside a sample */
 	unsigned edge[ROW];    /* lanes in which an edge of a branch may be reached inside a sample */
-	unsigned meet[ROW];    /* in which bodies may touch */
-	unsigned peak[2][ROW]; /* and those in which a body may have its largest displacement */
+	unsigned meet[ROW];    /* lanes in which the bodies may touch */
+	unsigned peak[2][ROW]; /* lanes in which a body may have its largest displacement */
 };
 
-/* A stretch some lanes of which are observed. */
+/* A stretch with some observed lanes. */
 struct observed_stretch {
 	const struct stretch *samples;
 	const struct lanes *lanes;
@@ -224,7 +224,7 @@ LANE_INLINE void stretch_move(struct stretch *s, const struct free_map maps[2], 
 		s->at[i][r + 1] = free_move(&maps[i], s->at[i][r], s->ground[r], s->ground[r + 1]);
 }
 
-/* Asks what may happen on the way. */
+/* Finds the lanes in which an event is possible inside a sample. */
 LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const struct free_map maps[2], int r,
                                const struct scope *scope)
 {
@@ -253,10 +253,10 @@ LANE_INLINE void stretch_prove(struct stretch *s, const struct lanes *g, const s
 	}
 }
 
-/* Flies every lane over a stretch, and asks what may have happened on the way: no lane waits for its proof.
+/* Moves every lane over a stretch, and finds possible events on the way: moves do not depend on the proofs.
  *
  * Given    s       ground
- *          g       where it begins;  maps: the bodies' maps
+ *          g       states at its start;  maps: the bodies' maps
  */
 LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const struct free_map maps[2],
                              const struct scope *scope)
@@ -266,14 +266,14 @@ LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const str
 		s->top[i][0] = g->top[i];
 	}
 	if (W == 8) {
-		// there are registers for one thing after the other
+		// enough registers to do all moves, then all proofs
 		for (int r = 0; r < ROW; r++)
 			stretch_move(s, maps, r, scope);
 		for (int r = 0; r < ROW; r++)
 			stretch_prove(s, g, maps, r, scope);
 		return;
 	}
-	// a proof runs while the next move waits for the last
+	// interleaved: a proof fills the latency of the dependent moves
 	_Pragma("GCC unroll 1") for (int r = 0; r < ROW; r++)
 	{
 		stretch_move(s, maps, r, scope);
@@ -281,11 +281,11 @@ LANE_INLINE void stretch_run(struct stretch *s, const struct lanes *g, const str
 	}
 }
 
-/* Lanes in which the bodies' displacement against each other may be larger inside a sample of a stretch than at any sample up to
+/* Lanes in which the relative displacement may be larger inside a sample of a stretch than at all samples up to
  * its end.
  *
- * Given    most   u_1 - u_2 and u_2 - u_1 at most at the samples up to its start  (2)
- * Returns  reach  up to its end  (2)
+ * Given    most   largest u_1 - u_2 and u_2 - u_1 at the samples up to its start  (2)
+ * Returns  reach  ... up to its end  (2)
  */
 LANE_INLINE unsigned stretch_exceeds(const struct observed_stretch *o, int r, const vd most[2], vd reach[2])
 {
@@ -303,7 +303,7 @@ LANE_INLINE unsigned stretch_exceeds(const struct observed_stretch *o, int r, co
 	return vbits(vless(reach[0], vmax(b1, b2) + error) | vless(reach[1], error - vmin(b1, b2)));
 }
 
-/* Some lanes arrive at a sample of a stretch. */
+/* Moves some lanes to a sample of a stretch. */
 LANE_INLINE void stretch_keep(struct lanes *g, const struct stretch *s, int r, vm which,
                               const struct scope *scope)
 {

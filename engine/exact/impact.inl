@@ -1,18 +1,18 @@
-/* impact.inl - rigid contacts: velocities that jump, and bodies that stay together where their hops have ended.
+/* impact.inl - rigid contacts: impacts with velocity jumps, and bodies that stay together after their rebounds have decayed.
  *
- *   an impact        q becomes -e q by J = (1 + e) m q, which the floors of both sides share by weights
+ *   an impact        q becomes -e q by J = (1 + e) m q, which acts on the floors of both sides by weights
  *   staying together p'' = 0: forces f of each order from J M^-1 J^T f = relative accelerations without them, until one falls
  *                    through 0
  *
  * Included by chain.inl alone, once per lane count, after nonlinear_contact.inl. */
 
 enum {
-	REFINEMENTS = 2, /* solutions for what the one before left */
+	REFINEMENTS = 2, /* solutions per order: the first, and iterative refinement by its residual */
 	ROUNDS_A_LINK = 4,
 };
 
 static const double HOPS_END =
-    1e-12; /* of a sample: hops that are over in so short a time are no hops any more */
+    1e-12; /* fraction of a sample: if all further rebounds take less time, the sides stay together */
 
 static bool link_rigid(const struct link *l)
 {
@@ -21,7 +21,7 @@ static bool link_rigid(const struct link *l)
 
 /* ---- staying together ---- */
 
-/* Acceleration of a floor of order n, in the units of the step, but for what holds bodies together. */
+/* Order n of a floor's acceleration, in the units of the step, without the forces of held contacts not yet added. */
 static double floor_acceleration(const struct chain *c, int i, int n, double ground)
 {
 	double force = 0, damping;
@@ -51,7 +51,7 @@ static double floor_acceleration(const struct chain *c, int i, int n, double gro
 	return fma(force, c->inverse_mass.at[i], -c->push.at[i] - damping - ground);
 }
 
-/* Relative acceleration, or velocity, that what pushes on all held links gives to the sides of each of them. */
+/* Relative acceleration (or velocity) of the sides of each held link, by forces (or impulses) on all held links. */
 static void held_apply(const struct chain *c, const double *push, double *closing)
 {
 	double floors[POUND_CHAIN_FLOORS];
@@ -68,8 +68,8 @@ static void held_apply(const struct chain *c, const double *push, double *closin
 	}
 }
 
-/* Solves J M^-1 J^T f = b for the links that are held, by conjugate gradients over 1/m of each: links that share no floor, or
- * only heavy ones, are done in few rounds, and levels that are nearly the same do no harm.
+/* Solves J M^-1 J^T f = b for the held links, by conjugate gradients preconditioned by the diagonal: links that share no floor, or
+ * only heavy ones, take few iterations, and nearly dependent links do no harm.
  *
  * Given    b    (n_links)
  * Returns  f    (n_links), 0 of links that are not held
@@ -107,10 +107,10 @@ static void held_solve(const struct chain *c, const double *b, double *f)
 	}
 }
 
-/* Adds the forces of order n that hold bodies together.
+/* Adds order n of the forces of held links.
  *
  * Given    ground  of order n
- * Returns  overlaps  of these links: their forces, for they have no overlap
+ * Returns  overlaps  of held links, whose overlap is 0: their forces instead
  */
 static void held_push(struct chain *c, int n, double ground)
 {
@@ -134,7 +134,7 @@ static void held_push(struct chain *c, int n, double ground)
 	}
 }
 
-/* Magnitudes that the force of a held contact is made of at the start of a step, in the units of the step. */
+/* Sum of magnitudes of the terms of a held contact's force at the start of a step, in the units of the step. */
 static double held_terms(const struct chain *c, const struct link *l)
 {
 	const double h2 = c->dt * c->dt;
@@ -144,7 +144,7 @@ static double held_terms(const struct chain *c, const struct link *l)
 	return made / l->inverse_mass;
 }
 
-/* Lets go of a contact; what is left of its overlap is nothing. */
+/* Releases a held contact, with zero overlap. */
 static void held_end(struct link *l)
 {
 	l->held = l->touching = false;
@@ -173,7 +173,7 @@ static void impulse_apply(struct chain *c, const struct link *by, double impulse
 	}
 }
 
-/* Gives all bodies that are held together one velocity, with their momentum. */
+/* Gives bodies that are held together a common velocity, conserving momentum. */
 static void held_merge(struct chain *c)
 {
 	double closing[LINKS] = {0}, impulse[LINKS];
@@ -193,7 +193,7 @@ static void held_merge(struct chain *c)
 			c->link[j].q = 0;
 }
 
-/* Lets go of bodies that an impact beside them has given different velocities. */
+/* Releases held links whose sides have got different velocities by another link's impact. */
 static void held_separate(struct chain *c)
 {
 	for (int j = 0; j < c->n_links; j++) {
@@ -233,7 +233,7 @@ static void contact_record(const struct chain *c, const struct link *l, double e
 		                                                               .impulse = impulse});
 }
 
-/* Two sides meet.
+/* The impact of two sides that meet.
  *
  * Given    l   p = 0, q >= 0
  */
@@ -247,7 +247,7 @@ static void impact(struct chain *c, struct link *l, double time)
 	l->p = 0;
 	const double a = link_acceleration(c, l);
 	const double hops = e < 1 ? 2 * e * q / (a * (1 - e)) : INFINITY;
-	// sides that meet without speed do so by an acceleration, or by what comes after it
+	// sides that meet with zero speed are driven together by an acceleration or a higher derivative
 	const bool stays = q == 0 || (a > 0 && hops < HOPS_END * c->task->time_step);
 	const double impulse = (1 + (stays ? 0 : e)) * q / l->inverse_mass;
 	l->held = l->touching = stays;

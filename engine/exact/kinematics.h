@@ -1,11 +1,11 @@
-/* kinematics.h - where a motion is. */
+/* kinematics.h - displacement and velocity of a motion, in lanes. */
 #ifndef KINEMATICS_H
 #define KINEMATICS_H
 
 #include "engine/numeric/lanes.h"
 
 struct kinematics {
-	vd u, v; /* a displacement, and its rate */
+	vd u, v; /* displacement and velocity */
 };
 
 #endif

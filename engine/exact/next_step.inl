@@ -1,4 +1,4 @@
-/* next_step.inl - what is done to one simulation at a time: its start, what follows a step, its next branch, its end.
+/* next_step.inl - operations on one simulation at a time: its start, the choice of its next step and branch, its end.
  *
  * Included by exact.inl alone, once per lane count.
  *
@@ -12,14 +12,14 @@
 #include "engine/exact/counts.h"
 #include "engine/exact/tolerances.h"
 
-/* Largest rate * time of a series step: of a velocity the first term left out is near 2^-52 of the first kept or below: apart
- * 0.35^13/13! = 1.9e-16; touching 0.945^17/17! = 1.1e-15, and where the dashpot lets it swing less no more: see
+/* Largest rate * time of a series step: the first omitted term of a velocity is near 2^-52 of the first term or below: separated
+ * 0.35^13/13! = 1.9e-16; in contact 0.945^17/17! = 1.1e-15, which also holds near critical damping: see
  * contact_reach. */
 static const double REACH_FREE = 0.35, REACH_CONTACT = 0.945;
 
 static const double NEVER = -1e300; /* overlap of bodies that cannot meet */
 
-enum { FREE_SAMPLES = 4095 }; /* a free motion ends at every sample with these bits, wherever it began */
+enum { FREE_SAMPLES = 4095 }; /* free motion is interrupted at every sample with all of these bits set */
 
 static_assert(sizeof(struct state_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
@@ -32,7 +32,7 @@ static double most(double a, double b)
 
 /* ---- maps ---- */
 
-/* Puts a body's current branch, and the map that belongs to it, into the rows. */
+/* Copies a body's current branch and its free-motion map into the rows. */
 static void branch_enter(struct simulation *sim, int i)
 {
 	const struct pound_branch *branch = &sim->at[i].branch;
@@ -59,9 +59,9 @@ static void branch_enter(struct simulation *sim, int i)
 	memcpy(&x->map[i], &sim->maps[i][m], sizeof sim->maps[i][m]);
 }
 
-/* ---- what follows ---- */
+/* ---- the next step ---- */
 
-/* The interval that ends at a sample is the one that a simulation is in. */
+/* Sets the current interval to the one that ends at a sample. */
 static void interval_set(struct simulation *sim, int64_t next)
 {
 	const double *a = &sim->ground[next];
@@ -82,7 +82,7 @@ static void simulation_interval(struct simulation *sim)
 		simulation_observe(sim, sim->next - 1);
 }
 
-/* The next step by power series. */
+/* Chooses the length and kind of the next step by power series. */
 static enum pound_stage simulation_step(struct simulation *sim)
 {
 	if (++sim->steps > POUND_STEPS_LIMIT)
@@ -103,15 +103,15 @@ static enum pound_stage simulation_step(struct simulation *sim)
 	return x->p + x->dt * x->q < 0 ? STAGE_STEP_CLEAR : STAGE_STEP_PAIR;
 }
 
-/* The overlap of separated bodies, from where they are. */
+/* Computes the overlap of separated bodies from their displacements. */
 static void overlap_start(struct state_rows *x)
 {
 	double p = x->u[0] - x->u[1] - x->gap;
-	x->p = p < 0 ? p : 0; // rounding must not make it overlap
+	x->p = p < 0 ? p : 0; // rounding must not give a positive overlap
 	x->q = x->v[0] - x->v[1];
 }
 
-/* A simulation whose free motion ended at a sample. */
+/* Continues by power series after a free motion that ended at a sample. */
 LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
@@ -120,9 +120,9 @@ LANE_INLINE enum pound_stage simulation_meet(struct simulation *sim)
 	return simulation_step(sim);
 }
 
-/* Whether the contact that has ended did more than roundings do.
+/* Whether the contact that has ended counts (counts.h).
  *
- * Given    changed  what it did to speeds [m/s]
+ * Given    changed  its change of the relative velocity [m/s]
  */
 static bool contact_counts(struct simulation *sim, double changed)
 {
@@ -141,9 +141,9 @@ static bool contact_counts(struct simulation *sim, double changed)
 	return pound_contact_counts(&counts, &sim->counts_scale);
 }
 
-/* A contact has ended, or the signal has in it.
+/* Records a contact that has ended, or is still open at the end of the signal.
  *
- * Given    speed  at which the bodies approach [m/s]
+ * Given    speed  closing speed now [m/s]
  */
 static void contact_over(struct simulation *sim, double speed)
 {
@@ -161,9 +161,9 @@ static void contact_over(struct simulation *sim, double speed)
 	}
 }
 
-/* Contact has begun or ended.
+/* Begins or ends a contact.
  *
- * Given    left   of the interval [s];  speed: of approach [m/s]
+ * Given    left   time left in the interval [s];  speed: approach speed [m/s]
  */
 static void contact_transition(struct simulation *sim, double left, double speed)
 {
@@ -177,7 +177,7 @@ static void contact_transition(struct simulation *sim, double left, double speed
 	}
 }
 
-/* A simulation whose bodies are separated goes on from a sample. */
+/* Next stage of a simulation at a sample, with separated bodies. */
 static enum pound_stage simulation_from(struct simulation *sim)
 {
 	if (sim->has_free_maps)
@@ -185,12 +185,12 @@ static enum pound_stage simulation_from(struct simulation *sim)
 	return simulation_meet(sim);
 }
 
-/* Brings to rest what is left of next to nothing, where nothing comes from the ground in this interval.
+/* Sets negligible motion to rest, if the ground does not move in this interval.
  *
- * Bodies that do not touch come to rest each by itself: one may have long ended where the other still moves, or stays where
- * it has yielded to.
+ * Separated bodies are set to rest independently: one may have stopped long before the other, which may still move or rest at
+ * a residual displacement.
  *
- * Returns  value  nothing is left of either: simulation_rest is to follow
+ * Returns  value  both motions are negligible: simulation_rest must follow
  */
 static bool simulation_comes_to_rest(struct simulation *sim)
 {
@@ -208,7 +208,7 @@ static bool simulation_comes_to_rest(struct simulation *sim)
 	return false;
 }
 
-/* Brings a simulation whose motion is over to rest, until the ground moves again. */
+/* Sets a simulation with negligible motion to rest, and skips to the sample where the ground moves again. */
 static enum pound_stage simulation_rest(struct simulation *sim)
 {
 	struct state_rows *x = &sim->x;
@@ -221,7 +221,7 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	double left =
 	    x->remainder +
 	    x->substeps *
-	        x->substep; // of the interval: bodies that press each other come to rest inside one, too
+	        x->substep; // time left in the interval: motion in contact may become negligible inside one
 	if (observed(sim))
 		simulation_observe(sim, time_unobserved(sim) > 0 ? -1 : sim->next - 1);
 	while (sim->ground[sim->next] == 0) {
@@ -236,14 +236,14 @@ static enum pound_stage simulation_rest(struct simulation *sim)
 	return simulation_from(sim);
 }
 
-/* The sample up to which a free motion may go before it is examined; other simulations do not change it. */
+/* The sample at which a free motion is interrupted for a check of rest; independent of the other simulations. */
 static int64_t free_end(const struct simulation *sim)
 {
 	int64_t end = sim->next | FREE_SAMPLES;
 	return end < sim->last ? end : sim->last;
 }
 
-/* What a simulation does that has moved as far as it might. */
+/* Next stage of a simulation whose free motion has reached free_end. */
 static enum pound_stage simulation_after_free(struct simulation *sim, enum pound_stage stage)
 {
 	if (sim->next > sim->last)
@@ -252,7 +252,7 @@ static enum pound_stage simulation_after_free(struct simulation *sim, enum pound
 	return simulation_comes_to_rest(sim) ? simulation_rest(sim) : stage;
 }
 
-/* What a simulation does next. */
+/* Next stage of a simulation. */
 static enum pound_stage simulation_next(struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
@@ -272,11 +272,11 @@ static enum pound_stage simulation_next(struct simulation *sim)
 	return simulation_step(sim);
 }
 
-/* What a simulation does after substeps of contact.
+/* Next stage of a simulation after substeps of contact.
  *
- * Given    stage    that it was in: STAGE_CONTACT or STAGE_SUSTAINED
- *          refused  the next substeps could not be proved: shorter doubled maps are to be tried
- *          gone     it went as far as a longer doubled map would have: past what refused that
+ * Given    stage    its stage: STAGE_CONTACT or STAGE_SUSTAINED
+ *          refused  the next substeps could not be proved free of events: shorter doubled maps are tried next
+ *          gone     it has passed the length of the next longer doubled map: longer ones are tried again
  */
 static enum pound_stage simulation_after_contact(struct simulation *sim, enum pound_stage stage, bool refused,
                                                  bool gone)
@@ -290,21 +290,21 @@ static enum pound_stage simulation_after_contact(struct simulation *sim, enum po
 	return stage == STAGE_CONTACT && refused ? simulation_step(sim) : contact_ready(sim);
 }
 
-/* A body's law goes on to its next branch; from here the edge is exact. */
+/* Moves a body's law to its next branch; the displacement is set exactly to the edge. */
 static void body_transition(struct simulation *sim, int i, enum pound_edge edge)
 {
 	struct state_rows *x = &sim->x;
 	if (edge != POUND_EDGE_REVERSAL)
 		x->u[i] = edge == POUND_EDGE_HIGH ? x->body[i].high : x->body[i].low;
 	if (edge == POUND_EDGE_REVERSAL && x->body[i].direction == 0)
-		return; // a turn that was only looked for as a largest displacement
+		return; // a reversal that was searched only as a largest displacement
 	pound_law_leave(&sim->task->bodies[i].backbone, &sim->at[i], edge, x->u[i]);
 	branch_enter(sim, i);
 }
 
-/* What a simulation does after a step by power series.
+/* Next stage of a simulation after a step by power series.
  *
- * Given    event  that ended it;  left, speed: as contact_transition has them
+ * Given    event  the event that ended the step;  left, speed: see contact_transition
  */
 static enum pound_stage simulation_stepped(struct simulation *sim, int event, double left, double speed)
 {
@@ -322,10 +322,10 @@ static enum pound_stage simulation_stepped(struct simulation *sim, int event, do
 
 /* ---- largest displacements ---- */
 
-/* Notes a sample inside of which a body may have its largest displacement.
+/* Notes a sample that may contain a body's largest displacement; drops notes that have been exceeded.
  *
- * Given    noted   the sample, of body i;  top: the largest displacement that is known
- * Returns  value   false: there is no room for it
+ * Given    noted   the sample, of body i;  top: the largest displacement so far
+ * Returns  value   false: there is no room
  */
 static bool peak_note(struct simulation *sim, int i, const struct pound_peak *noted, double top)
 {
@@ -342,10 +342,10 @@ static bool peak_note(struct simulation *sim, int i, const struct pound_peak *no
 	return true;
 }
 
-/* Looks, when a simulation has come to its end, into the samples it has noted: the body goes through these again, alone.
+/* At the end of a simulation, integrates each noted sample again, with one body only, for its largest displacement.
  *
- * Given    sim    its result written but for what these add to it
- * Returns  value  its next step; STAGE_END: there is nothing left to look into
+ * Given    sim    its result written except for larger displacements found here
+ * Returns  value  its next step; STAGE_END: no noted sample is left
  */
 static enum pound_stage peaks_look(struct simulation *sim)
 {
@@ -384,11 +384,11 @@ static bool simulation_edged(const struct pound_task *task)
 
 /* Longest step in contact.
  *
- * The fastest that two bodies may do on each other is that of the faster one on a spring and dashpot as stiff as both see the
- * contact.  Derivative n of exp(-zeta t) sin((1 - zeta^2)^1/2 t) is at most 1 over (1 - zeta^2)^1/2, and at most n: a step is
- * shorter by the 16th root of that, which its power of 17 more than makes up for.  Above zeta = 1 the faster root counts.
+ * The highest rate of two bodies in contact is at most that of the faster body with the contact spring and dashpot added, scaled by
+ * 1 + m1/m2.  Derivative n of exp(-zeta t) sin((1 - zeta^2)^1/2 t) is at most 1 over (1 - zeta^2)^1/2, and at most n: the step is
+ * shortened by the 16th root of that factor, which the 17th power in the error more than compensates.  Above zeta = 1 the faster root counts.
  *
- * Given    omega, damping  the largest of both bodies [1/s]
+ * Given    omega, damping  the larger ones of both bodies [1/s]
  */
 static double contact_reach(const struct state_rows *x, double omega, double damping)
 {
@@ -400,7 +400,10 @@ static double contact_reach(const struct state_rows *x, double omega, double dam
 	return REACH_CONTACT * share / (own * (zeta > 1 ? zeta + sqrt(zeta * zeta - 1) : 1));
 }
 
-/* A simulation at the start of its task; what it does first. */
+/* Initializes a simulation for its task.
+ *
+ * Returns  value  its first stage
+ */
 static enum pound_stage simulation_start(struct simulation *sim, const struct pound_task *task,
                                          struct pound_task_result *result)
 {
@@ -413,11 +416,11 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	sim->last = task->n_samples - 1;
 	struct state_rows *x = &sim->x;
 	x->pace = 1;
-	x->rounds = -1; // another map is asked for only where there are doubled maps
+	x->rounds = -1; // never reaches 0: no other map is chosen unless there are doubled maps
 	sim->looked = POUND_OSCILLATORS;
 	double h = task->time_step;
 	double rate = 0, fastest = 0, damping = 0;
-	bool has_free_maps = !task->accounted; // the work in a step is that of its series
+	bool has_free_maps = !task->accounted; // the energy balance needs the series of each step
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *body = &task->bodies[i];
 		double k = body->backbone.stiffness;
@@ -461,7 +464,7 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	x->reach = rate > 0 ? REACH_FREE / rate : DBL_MAX;
 	sim->has_contact = task->contact;
 	double reach = contact_reach(x, fastest, damping);
-	// no more substeps than it takes, but for doubled maps, which are made by doubling
+	// the fewest substeps; above 8 a power of two, as doubled maps need
 	x->substeps_per_sample = 1;
 	while (h > reach * x->substeps_per_sample)
 		x->substeps_per_sample += x->substeps_per_sample < DOUBLED_RATIO ? 1 : x->substeps_per_sample;
@@ -481,10 +484,10 @@ static enum pound_stage simulation_start(struct simulation *sim, const struct po
 	return simulation_from(sim);
 }
 
-/* ---- what simulations of one scene have in common ---- */
+/* ---- constants shared by simulations of one scene ---- */
 
-/* A simulation with the constants of others has them in common with these from its start to its end: bodies with laws of one
- * branch keep theirs.  When all have left, the next to start sets them. */
+/* Joins the shared constants at the start of a simulation if they equal its own, until its end: with laws of one branch they
+ * never change.  When all members have left, the next simulation to start defines them. */
 static void common_join(struct pound_common *common, struct simulation *sim)
 {
 	if (sim->traits & (TRAIT_EDGED | TRAIT_ACCOUNTED))
@@ -501,7 +504,7 @@ static void common_join(struct pound_common *common, struct simulation *sim)
 	sim->traits &= ~(unsigned)TRAIT_OWN;
 }
 
-/* What looks for largest displacements at the end puts other branches into the rows. */
+/* Leaves the shared constants at the end: peaks_look changes the rows. */
 static void common_leave(struct simulation *sim)
 {
 	if (sim->common)
@@ -512,7 +515,7 @@ static void common_leave(struct simulation *sim)
 
 /* ---- the end ---- */
 
-/* What is missing of the energy put in, by the ground and by the motion at the start, over the most there was. */
+/* Residual of the energy balance, with the initial kinetic energy as input, over the largest energy of the motion. */
 static double residual(const struct simulation *sim)
 {
 	const struct state_rows *x = &sim->x;
@@ -531,12 +534,12 @@ static void result_write(struct simulation *sim, enum pound_status status)
 {
 	struct pound_task_result *r = sim->result;
 	const struct state_rows *x = &sim->x;
-	// a contact still open at the end counts with what it has
+	// a contact still open at the end counts with its impulse so far
 	if (sim->touching)
 		contact_over(sim, x->q);
 	if (observed(sim))
 		simulation_observe(sim, status == POUND_OK ? sim->last : -1);
-	sim->traits &= ~(unsigned)TRAIT_OBSERVED; // what follows looks back
+	sim->traits &= ~(unsigned)TRAIT_OBSERVED; // peaks_look goes back in time: not to be reported
 	bool finite = isfinite(x->u[0]) && isfinite(x->v[0]) && isfinite(x->u[1]) && isfinite(x->v[1]);
 	r->status = finite ? status : POUND_OVERFLOW;
 	r->contacts = (int64_t)sim->contacts;
@@ -552,7 +555,7 @@ static void result_write(struct simulation *sim, enum pound_status status)
 	}
 }
 
-/* What a simulation does at the end of its signal, or where it ends early. */
+/* Next stage of a simulation at the end of its signal, or where it ends early. */
 static enum pound_stage simulation_end(struct simulation *sim, enum pound_status status)
 {
 	if (sim->looked == POUND_OSCILLATORS)

@@ -1,17 +1,17 @@
-/* nonlinear_contact.inl - steps of a chain while the force of a contact is no straight line: products p q and powers of p.
+/* nonlinear_contact.inl - steps of a chain while a contact force is nonlinear: products p q and powers of p.
  *
- * 1. p^1.5 has a branch point where a contact begins and ends, so time is a bad variable there.  Such a step goes in s with
+ * 1. p^1.5 has a branch point where a contact begins and ends, so a series in time fails there.  Such a step is a series in s with
  *    dt = g ds, g = w = p^(1/2), or g = w^3, w = p^(1/4), where a dashpot has p^(1/4):
  *
  *       w' = q/2,  p^1.5 = w^3             w' = q/4,  p^1.5 = w^6,  p^0.25 = w
  *       t' = g    d' = g v    v' = g a    q' = g a
  *
- *    All right sides are polynomials: coefficients by products, at w = 0 as elsewhere.  The contact ends at the simple root of w,
- *    and a sample is the root of t(s).
- * 2. One contact gives w, the master: of those that touch the one with the least p/|q|.  Far from its branch points, and for
+ *    All right sides are polynomials: coefficients by products, also at w = 0.  The contact ends at the simple root of w,
+ *    and a sample is a root of t(s).
+ * 2. One contact, the master, defines w: the touching one with the least p/|q|.  Far from its branch points, and for
  *    products, g = 1.  Powers of the other overlaps are by n p_0 P_n = sum_(k=1..n) (a k - n + k) p_k P_(n-k), P_0 = p_0^a.
- *    Another power that begins at the same instant has p = g w P = w^2 P or w^4 P, and from p' = g q follows, by the share of
- *    the step of length L,  L q_master P + w P' = L q.
+ *    Another power contact that begins at the same instant has p = g w P = w^2 P or w^4 P, and p' = g q gives, with derivatives by
+ *    the fraction of the step of length L,  L q_master P + w P' = L q.
  * 3. The step is as long as its last coefficients allow: a series of another length has coefficients times powers of the ratio.
  *
  * Included by chain.inl alone, once per lane count, before chain_events.inl. */
@@ -26,7 +26,7 @@ static bool link_power(const struct link *l)
 	return link_curved(l) && l->at.on.form != POUND_TOUCH_PRODUCT;
 }
 
-/* Whether a contact's force, which has a fourth root of its overlap, ends it before its overlap does. */
+/* Whether a contact of the form with p^0.25 ends at zero force, before its overlap does. */
 static bool link_curve_forced(const struct link *l)
 {
 	return link_curved(l) && l->at.on.form == POUND_TOUCH_ROOT && !l->link->law.tension;
@@ -40,7 +40,7 @@ static double root_of(double x, int n)
 
 /* ---- products of series ---- */
 
-/* Coefficient n of the product of two series: by turns into two sums, as each waits for its term before. */
+/* Coefficient n of the product of two series, in two partial sums to shorten the dependency chain. */
 LANE_INLINE double product_at(const double *a, const double *b, int n)
 {
 	double even = 0, odd = 0;
@@ -51,7 +51,7 @@ LANE_INLINE double product_at(const double *a, const double *b, int n)
 	return n % 2 ? even + odd : fma(a[n], b[0], even) + odd;
 }
 
-/* Coefficient n >= 1 of p^a: the weights are made on the way. */
+/* Coefficient n >= 1 of p^a, by the recurrence of the head comment. */
 LANE_INLINE double power_next(double a, const double *p, const double *power, int n)
 {
 	double even = 0, odd = 0, weight = a + 1 - n;
@@ -63,9 +63,9 @@ LANE_INLINE double power_next(double a, const double *p, const double *power, in
 	return (n % 2 ? fma(weight * p[n], power[0], even) + odd : even + odd) / (n * p[0]);
 }
 
-/* ---- what a step is made of ---- */
+/* ---- the series of a step ---- */
 
-/* Fastest of the contacts' forces: largest growth with the overlap, or with the rate times the frequency, over effective mass. */
+/* Rate of a contact: frequency of its tangent stiffness plus tangent damping, over the effective mass [1/s]. */
 static double curve_rate(const struct link *l)
 {
 	const struct pound_touch_line line = pound_contact_line(&l->at.on, fmax(l->p, 0));
@@ -74,7 +74,7 @@ static double curve_rate(const struct link *l)
 	return sqrt(spring * l->inverse_mass) + line.rate * l->inverse_mass;
 }
 
-/* Fastest rate in s where the contact is near its beginning or its end: there w = |q| s/2 or |q| s/4. */
+/* Highest rate in s near the beginning or end of a contact: there w = |q| s/2 or |q| s/4. */
 static double branch_rate(const struct link *l, int power)
 {
 	const double m = l->inverse_mass, q = fabs(l->q), K = l->at.on.stiffness;
@@ -84,15 +84,15 @@ static double branch_rate(const struct link *l, int power)
 	return fmax(root_of(c * q4 * m / 256, 5), root_of(K * q4 * q4 * m / 262144, 10));
 }
 
-/* Whether a contact begins with next to no speed: it has no branch point to go through, and for a moment no force. */
+/* Whether a contact begins with negligible speed: w cannot be the variable then, and the force is negligible at first. */
 static bool link_still(const struct link *l)
 {
 	return link_power(l) && l->p <= 0 && fabs(l->q) < 0x1p-500;
 }
 
-/* Chooses the power of w near the branch point of the master, and which contacts begin with it.
+/* Chooses the power of w near the branch point of the master, and finds the contacts that begin together with it.
  *
- * Returns  the fastest rate in s of these contacts
+ * Returns  value  the highest rate in s of these contacts
  */
 static double curved_begin(struct chain *c)
 {
@@ -113,7 +113,7 @@ static double curved_begin(struct chain *c)
 	return rate;
 }
 
-/* Chooses what the step goes in, and for how long at first. */
+/* Chooses the variable of the step and its first length. */
 static void curved_choose(struct chain *c)
 {
 	struct curved_step *x = &c->curved_step;
@@ -130,7 +130,7 @@ static void curved_choose(struct chain *c)
 		if (!link_power(l) || l->q == 0)
 			continue;
 		const double near = fmax(l->p, 0) / fabs(l->q);
-		// of several that begin now the fastest one: the overlaps of the others are smaller
+		// of several that begin now, the fastest: the overlaps of the others are smaller
 		if (near < least || (near == 0 && least == 0 && l->q > c->link[x->master].q)) {
 			least = near;
 			x->master = j;
@@ -158,7 +158,7 @@ LANE_INLINE void power_fill(double a, const double *p, double *power, int n)
 	power[n] = n > 0 ? power_next(a, p, power, n) : a == 0.25 ? sqrt(sqrt(*p)) : *p * sqrt(*p);
 }
 
-/* Order n of the powers of an overlap that begins with the master's: of P, times those of w. */
+/* Order n of the powers of an overlap that begins together with the master's: powers of P times powers of w. */
 static void beside_powers(struct curved_step *x, int j, bool root, int n)
 {
 	const struct curve *by = &x->links[x->master];
@@ -177,7 +177,7 @@ static void beside_powers(struct curved_step *x, int j, bool root, int n)
 	v->quarter[n] = product_at(x->w, v->ratio_quarter, n);
 }
 
-/* Powers of a link's overlap of order n. */
+/* Order n of the powers of a link's overlap. */
 static void link_powers(struct chain *c, int j, int n)
 {
 	struct curved_step *x = &c->curved_step;
@@ -194,7 +194,7 @@ static void link_powers(struct chain *c, int j, int n)
 		beside_powers(x, j, root, n);
 		return;
 	}
-	if (v->overlap[0] <= 0 || x->still) { // too short a step for it to act
+	if (v->overlap[0] <= 0 || x->still) { // its force is negligible in this step
 		*power = *quarter = 0;
 		return;
 	}
@@ -203,7 +203,7 @@ static void link_powers(struct chain *c, int j, int n)
 		power_fill(0.25, v->overlap, v->quarter, n);
 }
 
-/* Force of a contact, of order n: its overlap, rate and powers are known up to there. */
+/* Order n of a contact's force, from its overlap, rate and powers up to that order. */
 static double curve_force(const struct chain *c, int j, int n)
 {
 	const struct curved_step *x = &c->curved_step;
@@ -239,7 +239,7 @@ static void curved_modal(struct chain *c, int n)
 	}
 }
 
-/* Sets what acts on floors from outside at order n. */
+/* Sets order n of the external forces on floors (contacts, modal damping), over masses. */
 static void curved_pushes(struct chain *c, int n)
 {
 	for (int i = 0; i < c->wide; i += W)
@@ -284,8 +284,8 @@ LANE_INLINE void curved_accelerate(struct chain *c, int n, double ground)
 	}
 }
 
-/* Order n + 1 of drifts and their rates, whose derivatives by s are g times the rates and their accelerations; by turns into two
- * sums each, as each waits for its term before. */
+/* Order n + 1 of drifts and their rates, whose derivatives by s are g times the rates and the accelerations; in two partial sums
+ * each, to shorten the dependency chain. */
 LANE_INLINE void curved_integrate(struct chain *c, int n, int i)
 {
 	struct curved_step *x = &c->curved_step;
@@ -312,7 +312,7 @@ LANE_INLINE void curved_integrate(struct chain *c, int n, int i)
 	column_store(&x->rates[n + 1], i, share * (rate[0] + rate[1]));
 }
 
-/* Order n of g and of the time, out of w. */
+/* Order n of g and order n + 1 of the time, from w. */
 static void curved_gauge(struct curved_step *x, int n)
 {
 	if (x->power > 0) {
@@ -324,7 +324,7 @@ static void curved_gauge(struct curved_step *x, int n)
 		x->clock[n + 1] = x->length * POUND_SHARE[n] * x->gauge[n];
 }
 
-/* Order n + 1 of what links do. */
+/* Order n + 1 of overlaps, their rates and w. */
 static void curved_links(struct chain *c, int n)
 {
 	struct curved_step *x = &c->curved_step;
@@ -359,7 +359,7 @@ static void curved_start(struct chain *c)
 	x->clock[0] = 0;
 }
 
-/* A story without rate where its branch ends (chain_series.inl: story_zero_rounding). */
+/* A story at rest on a branch boundary (chain_series.inl: story_zero_rounding). */
 static void curved_story_zero_rounding(struct chain *c, int i)
 {
 	c->drifts[2].at[i] = 0.5 * c->curved_step.accelerations[0].at[i];
@@ -390,13 +390,13 @@ static void curved_series(struct chain *c)
 	}
 }
 
-/* ---- how long it is ---- */
+/* ---- the length of a step ---- */
 
-enum { LAST = 3 }; /* terms that are looked at: of some series every other one vanishes */
+enum { LAST = 3 }; /* last terms to check: in some series every other term vanishes */
 
-static const double TAIL = 1e-16; /* of the last terms, over the first ones */
+static const double TAIL = 1e-16; /* largest last terms over the first ones */
 
-/* Largest of the last terms of a series, with a stride, over its first terms. */
+/* Raises the largest ratios of the last terms of a series, with a stride, to its first terms. */
 static void tail_keep(double most[LAST], const double *series, size_t stride, double least)
 {
 	const double first = fmax(fabs(series[0]) + fabs(series[stride]), least);
@@ -404,7 +404,7 @@ static void tail_keep(double most[LAST], const double *series, size_t stride, do
 		most[k] = fmax(most[k], fabs(series[(size_t)(ORDER_HIGH - k) * stride]) / first);
 }
 
-/* Ratio of lengths by which the last terms of all rates and of w are below rounding of the first ones. */
+/* Ratio of step lengths at which the last terms of all rates and of w fall below the rounding of the first ones. */
 static double curved_ratio(const struct chain *c)
 {
 	const struct curved_step *x = &c->curved_step;
@@ -416,7 +416,7 @@ static double curved_ratio(const struct chain *c)
 	for (int j = 0; j < c->n_links; j++)
 		if (link_curved(&c->link[j]))
 			tail_keep(most, x->links[j].rate, 1, 0x1p-10 * fastest);
-	// a force that is small beside others still decides by its sign when its contact ends
+	// the sign of a force decides when its contact ends, however small it is beside others
 	for (int j = 0; j < c->n_links; j++)
 		if (x->links[j].beside)
 			tail_keep(most, x->links[j].ratio, 1, 0);
@@ -430,7 +430,7 @@ static double curved_ratio(const struct chain *c)
 	return ratio;
 }
 
-/* Makes a series one of a step that is longer or shorter by a ratio. */
+/* Rescales all series to a step length times a ratio. */
 static void curved_scale(struct chain *c, double ratio)
 {
 	struct curved_step *x = &c->curved_step;
@@ -462,7 +462,7 @@ static void curved_scale(struct chain *c, double ratio)
 	}
 }
 
-/* Makes the series of a step as long as it may be. */
+/* Computes the series of the longest accurate step. */
 static void nonlinear_series(struct chain *c)
 {
 	enum { TRIES = 8 };
@@ -492,7 +492,7 @@ static void nonlinear_series(struct chain *c)
 	enclosures_make(c, c->displacements, &c->displacement);
 }
 
-/* Whether a contact's force is no straight line. */
+/* Whether some acting contact has a nonlinear force. */
 static bool chain_curved(const struct chain *c)
 {
 	for (int j = 0; c->curved && j < c->n_links; j++)
@@ -501,7 +501,7 @@ static bool chain_curved(const struct chain *c)
 	return false;
 }
 
-/* Makes accelerations of drifts those of floors, with the ground's: the series is not needed any more. */
+/* Turns the accelerations of drifts into absolute accelerations of floors, in place: the former are no longer needed. */
 static void curved_floor_accelerations(struct chain *c)
 {
 	struct curved_step *x = &c->curved_step;

@@ -1,8 +1,8 @@
 /* nonlinear_contact_step.inl - the step of nonlinear_contact.inl up to its first event.
  *
- * Included by chain.inl alone, once per lane count, after chain_step.inl's arrival of other steps is known: before it. */
+ * Included by chain.inl alone, once per lane count, after chain_energy.inl. */
 
-/* Looks for where a guard, a series, rises above 0. */
+/* Searches for the time at which a series rises above 0. */
 static void curve_search(struct first *first, const struct chain *c, const double guard[TERMS], int event,
                          int index)
 {
@@ -17,14 +17,14 @@ static void curve_search(struct first *first, const struct chain *c, const doubl
 		guard_search(first, c, guard_of(&g, &enclosure, zero, one), lane, event, lanes);
 }
 
-/* A series as a guard, times a sign. */
+/* Fills a guard with a series times a sign. */
 static void guard_fill(double guard[TERMS], const double *series, double sign)
 {
 	for (int n = 0; n <= ORDER_HIGH; n++)
 		guard[n] = sign * series[n];
 }
 
-/* Looks for the end of a contact by its force, or for its return: K p^1.25 + c q passes 0 with the force. */
+/* Searches for the end of a contact at zero force, or for the return of the force: K p^1.25 + c q has the force's sign. */
 static void forced_search(struct first *first, const struct chain *c, int j)
 {
 	const struct curved_step *x = &c->curved_step;
@@ -38,13 +38,13 @@ static void forced_search(struct first *first, const struct chain *c, int j)
 		    j == x->master ? product_at(x->w2, x->w3, n) : product_at(v->overlap, v->quarter, n);
 		guard[n] = sign * fma(K, power, C * v->rate[n]);
 	}
-	// where the force has just passed 0 it is beyond by a rounding (chain_events.inl: forces_search)
+	// a force that has just passed 0 is taken as beyond it (chain_events.inl: forces_search)
 	if (l->fresh)
 		guard[0] = fmin(guard[0], -DBL_EPSILON * C * fabs(l->q));
 	curve_search(first, c, guard, l->touching ? EVENT_ENDS : EVENT_BEGINS, j);
 }
 
-/* Looks for the edges of a contact whose force is no straight line. */
+/* Searches for the edges of a contact with a nonlinear force. */
 static void curved_search(struct first *first, const struct chain *c, int j)
 {
 	const struct curved_step *x = &c->curved_step;
@@ -67,7 +67,7 @@ static void curved_search(struct first *first, const struct chain *c, int j)
 		forced_search(first, c, j);
 }
 
-/* The first event of a step; its time is that of the sample at the end of the interval where that comes first. */
+/* The first event of a step, or the sample at the end of the interval if it comes first. */
 static struct first nonlinear_events(struct chain *c)
 {
 	struct curved_step *x = &c->curved_step;
@@ -112,7 +112,7 @@ static double curve_impulse(const struct chain *c, int j, double time)
 	return curved_integral(&c->curved_step, force, time);
 }
 
-/* Where the floors and links are at a share of the step. */
+/* Moves floors and links to a fraction of the step. */
 static void nonlinear_arrive(struct chain *c, double time)
 {
 	struct curved_step *x = &c->curved_step;

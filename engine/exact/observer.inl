@@ -1,18 +1,18 @@
 /* observer.inl - reports the instants of a simulation to its observer (task.h).
  *
- * Steps, substeps and free motion that end elsewhere are not reported: between two instants the motion is one linear system, and who
- * observes it may cut it as needed.
+ * Ends of steps, substeps and free motion at other times are not reported: between two instants the motion is that of one linear
+ * system, which an observer can subdivide as needed.
  *
  * Included by exact.inl after step.inl, once per lane count. */
 
-/* Few are. */
+/* Whether a simulation is observed; rarely true. */
 LANE_INLINE bool observed(const struct simulation *sim)
 {
 	return __builtin_expect(sim->traits & TRAIT_OBSERVED, 0);
 }
 
-/* Time since the last instant [s].  Substeps, which are equal throughout a task, are counted: how many go by at once is for the
- * scheduler to say. */
+/* Time since the last instant [s].  Substeps, all of one length in a task, are counted, not summed: the result must not depend on
+ * how many are passed per batch. */
 LANE_INLINE double time_unobserved(const struct simulation *sim)
 {
 	return sim->unobserved + sim->unobserved_substeps * sim->x.substep;
@@ -20,13 +20,13 @@ LANE_INLINE double time_unobserved(const struct simulation *sim)
 
 /* The instant at which a simulation is.
  *
- * Given    sample  that it is at; < 0: at an event, or where it ended early
+ * Given    sample  the current sample; < 0: at an event, or where the simulation ended early
  */
 LANE_INLINE void simulation_instant(struct simulation *sim, int64_t sample, struct pound_instant_of_task *now)
 {
 	const struct state_rows *x = &sim->x;
 	const double left = x->remainder + x->substeps * x->substep, step = sim->task->time_step;
-	// member by member: who reads it soon waits for wider stores
+	// member by member: early reads of single members would stall on wider stores
 	now->elapsed = time_unobserved(sim);
 	now->sampled = sample >= 0;
 	now->touching = sim->touching;
@@ -58,7 +58,7 @@ LANE_SHARED void simulation_observe(struct simulation *sim, int64_t sample)
 	observer->observe(observer->into, &now);
 }
 
-/* Reports that n samples were passed, up to one. */
+/* Reports that n samples were passed, the last one being `sample`. */
 LANE_SHARED void simulation_pass(struct simulation *sim, int64_t sample, int n)
 {
 	const struct pound_task_observer *observer = sim->task->observer;
@@ -69,7 +69,7 @@ LANE_SHARED void simulation_pass(struct simulation *sim, int64_t sample, int n)
 
 /* ---- samples of free motion ---- */
 
-/* Carries a lane out to a sample of a stretch. */
+/* Stores a lane's state at a sample of a stretch. */
 LANE_INLINE void stretch_carry(struct simulation *sim, const struct stretch *s, int r, int l)
 {
 	for (int i = 0; i < (sim->paired ? 2 : 1); i++) {
@@ -79,9 +79,9 @@ LANE_INLINE void stretch_carry(struct simulation *sim, const struct stretch *s, 
 	sim->unobserved = sim->task->time_step;
 }
 
-/* Reports that n samples of a lane were passed, up to one of a stretch.
+/* Reports that n samples of a lane were passed, the last one being `sample`.
  *
- * Given    most  of all lanes at that sample  (2)
+ * Given    most  largest u_1 - u_2 and u_2 - u_1 of all lanes up to that sample  (2)
  */
 LANE_INLINE void stretch_pass(struct simulation *sim, const vd most[2], int64_t sample, int l, int n)
 {

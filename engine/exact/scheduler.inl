@@ -1,4 +1,4 @@
-/* scheduler.inl - what a march works on: its tasks, the simulations that wait in queues, and the batches that are taken out of them.
+/* scheduler.inl - the work space of a run: its tasks, the queues of waiting simulations, and the batches taken from them.
  *
  * Included by exact.inl alone, once per lane count.
  *
@@ -7,19 +7,19 @@
 #include <assert.h>
 #include <string.h>
 
-enum { POOL = 128 /* simulations at once */ };
+enum { POOL = 128 /* simulations in progress at once */ };
 
-/* simulations that wait for one kind of step, last come first served */
+/* simulations that wait for one kind of step, last in first out */
 struct queue {
 	int n;
 	struct simulation *member[POOL];
 };
 
-/* of a batch: what its code need not ask of each lane */
+/* kind of a batch: selects specialized code without per-lane checks */
 enum kind {
 	KIND_PLAIN,  /* all laws have one branch */
-	KIND_EDGED,  /* a law has more */
-	KIND_COMMON, /* all of one scene, whose laws have one branch, and no lane empty */
+	KIND_EDGED,  /* a law has several branches */
+	KIND_COMMON, /* all lanes in use, by simulations of one scene whose laws have one branch */
 	KINDS
 };
 
@@ -27,18 +27,19 @@ struct work {
 	struct queue idle, queues[STAGES];
 	const struct pound_task *tasks;
 	struct pound_task_result *results;
-	int n, started;          /* tasks, and those gone through in this pass */
-	int passed;              /* 0: laws of one branch are started, 1: the others */
-	int n_waiting;           /* simulations that wait */
-	const atomic_bool *stop; /* NULL: never */
-	double beyond[W][ROW];   /* ground motion up to its end, and whatever was there behind */
+	int n, started; /* number of tasks, and of those examined in this pass */
+	int passed;    /* passes done: the first starts tasks whose laws have one branch, the second the others */
+	int n_waiting; /* number of simulations in waiting[] */
+	const atomic_bool *stop; /* NULL: never stopped */
+	double beyond[W][ROW];   /* last, partial row of the ground motion; its tail is stale data */
 	struct pound_common common;
-	// from here on nothing is cleared: a simulation's start does, and what finds the shared_starts
+	// work_init clears nothing from here on: simulation_start and shared_find do
 	struct shared_starts shared_starts;
-	struct simulation filler;      /* of the lanes that a batch leaves empty, and ... */
-	struct pound_task_result none; /* ... what comes of it */
+	struct simulation filler;      /* occupies the lanes that a batch leaves empty, and ... */
+	struct pound_task_result none; /* ... its unused result */
 	struct simulation pool[POOL];
-	struct simulation waiting[POOL * POUND_OTHERS]; /* for room, out of a family: no task starts meanwhile */
+	struct simulation
+	    waiting[POOL * POUND_OTHERS]; /* left a shared start; they enter the pool before new tasks */
 	struct pound_doubled_maps doubled[POOL][POUND_CONTACT_MAPS], common_doubled;
 };
 
@@ -54,7 +55,7 @@ static struct simulation *pop(struct queue *queue)
 	return queue->member[--queue->n];
 }
 
-/* What becomes of a simulation that has come to an end. */
+/* Ends a simulation: it goes on to examine noted samples, or returns to the idle ones. */
 LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
 	common_leave(sim);
@@ -67,7 +68,7 @@ LANE_SHARED void finish(struct work *work, struct simulation *sim, enum pound_st
 	push(&work->idle, sim);
 }
 
-/* A member leaves a family, and both try the step again. */
+/* A task leaves a shared simulation; both repeat the step separately. */
 LANE_SHARED void member_leave(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
 	assert(work->n_waiting < POOL * POUND_OTHERS);
@@ -75,7 +76,7 @@ LANE_SHARED void member_leave(struct work *work, struct simulation *sim, enum po
 	push(&work->queues[stage], sim);
 }
 
-/* Sends a simulation to where it goes next. */
+/* Puts a simulation into the queue of its next stage, or ends it. */
 LANE_INLINE void send(struct work *work, struct simulation *sim, enum pound_stage stage)
 {
 	if (stage < STAGES)
@@ -101,8 +102,8 @@ static enum kind batch_kind(unsigned traits)
 	return traits & TRAIT_EDGED ? KIND_EDGED : traits & TRAIT_OWN ? KIND_PLAIN : KIND_COMMON;
 }
 
-/* Takes the next batch of the queue behind one of a scene, if it is of the same kind: what they have in common is in lanes
- * already, and stays what it is, as no task starts meanwhile.  Alike bodies go another way (contact_any in exact.inl). */
+/* Takes the next batch from the same queue if it too is KIND_COMMON: the shared constants are in lanes already, and do not
+ * change, as no task starts meanwhile.  Identical bodies take another path (contact_any in exact.inl). */
 LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 {
 	struct queue *queue = b->from;
@@ -117,8 +118,8 @@ LANE_INLINE bool batch_again(struct work *work, struct batch *b)
 	return true;
 }
 
-/* An idle simulation, with the places of its maps: written here and not for the whole pool, as a page that is written to is memory
- * that the system has to clear. */
+/* Takes an idle simulation and sets the pointers to its doubled maps: here and not for the whole pool at the start, as the
+ * system would have to clear every page written to. */
 static struct simulation *idle_take(struct work *work)
 {
 	struct simulation *sim = pop(&work->idle);
@@ -127,7 +128,7 @@ static struct simulation *idle_take(struct work *work)
 	return sim;
 }
 
-/* Starts a task, with those that go along with it. */
+/* Starts a task, and the tasks that share its simulation. */
 static void task_start(struct work *work, int j)
 {
 	struct simulation *sim = idle_take(work);
@@ -137,8 +138,8 @@ static void task_start(struct work *work, int j)
 	send(work, sim, stage);
 }
 
-/* Goes on with simulations that wait, and starts tasks, as long as there are any and there is room: first those of laws of
- * one branch, which need less when they are among themselves. */
+/* Resumes waiting simulations and starts tasks while there is room: first the tasks whose laws have one branch, as batches of
+ * only these need fewer checks. */
 static void tasks_start(struct work *work)
 {
 	while (work->n_waiting > 0 && work->idle.n > 0) {
@@ -158,7 +159,7 @@ static void tasks_start(struct work *work)
 	}
 }
 
-/* Where a march begins: no task is started. */
+/* Prepares the work space; no task is started yet. */
 static void work_init(struct work *work, const struct pound_task *tasks, struct pound_task_result *results,
                       int n, const atomic_bool *stop)
 {

@@ -1,7 +1,7 @@
 /* series.inl - motion between two events as power series in time, and the first root of a guard on it.
  *
- * Included by exact.inl, after free_motion.inl, and by chain.inl, once per lane count.  Who includes it says of which orders the
- * series are: ORDER_LOW and ORDER_HIGH, odd, as terms are taken in pairs. */
+ * Included by exact.inl, after free_motion.inl, and by chain.inl, once per lane count.  The including file defines the orders of
+ * the series, ORDER_LOW and ORDER_HIGH: odd, as terms are taken in pairs. */
 
 #include <float.h>
 
@@ -12,16 +12,16 @@
 enum {
 	ROOT_ROUNDS = 64, /* of the safe root search; it converges quadratically but for double roots */
 	QUICK_ROUNDS = 5, /* of Halley's method from the parabola through both ends */
-	DEFLATE_MAX = 6,  /* leading zeros of a guard: at rest, touching, equal ground */
+	DEFLATE_MAX = 6,  /* most leading zero coefficients of a guard: at rest, touching, equal ground motion */
 };
 
-/* Runs BODY for n from one order up to another, as straight code: the orders are constants. */
+/* Runs BODY for n from one order up to another, unrolled: the orders are constants. */
 #define ORDERS_UP(n, from, to, ...)                               \
 	_Pragma("GCC unroll 20") for (int n = (from); n <= (to); n++) \
 	{                                                             \
 		__VA_ARGS__                                               \
 	}
-/* Runs BODY for odd n, down from `below` less than the order of a series: straight code, whichever order that is. */
+/* Runs BODY for odd n, down from order - `below`, unrolled for either order. */
 #define ORDERS_ODD(n, order, below, ...)                                                         \
 	_Pragma("GCC unroll 10") for (int n = ORDER_HIGH - (below); n > 0;                           \
 	                              n -= 2) if (n <= ORDER_LOW - (below) || (order) == ORDER_HIGH) \
@@ -41,8 +41,8 @@ struct motion {
 	vd fourth_max;         /* bound of the fourth derivative over the step */
 };
 
-/* Both bodies and the overlap over a step.  The overlap is integrated in its own right: the difference u1 - u2 - gap
- * would lose the digits of a stiff contact. */
+/* Both bodies and the overlap over a step.  The overlap is integrated as a separate variable: in a stiff contact the difference
+ * u1 - u2 - gap would cancel. */
 struct series {
 	int order;
 	struct motion body[2], overlap;
@@ -72,7 +72,7 @@ LANE_INLINE double fourth(int n)
 	return (double)n * (n - 1) * (n - 2) * (n - 3);
 }
 
-/* Adds up a motion to the end of its step. */
+/* Sums the series at the end of the step. */
 LANE_INLINE void motion_end(struct motion *m, int order)
 {
 	vd u = m->u.c[0], v = vsplat(0);
@@ -88,8 +88,7 @@ LANE_INLINE void motion_bound(struct motion *m, int order)
 	m->fourth_max = fourth_max;
 }
 
-/* What a guard is known to do over a step without being followed: values and slopes at both ends, and a bound of its
- * fourth derivative. */
+/* Enclosure of a quantity over a step: values and slopes at both ends, and a bound of its fourth derivative. */
 struct enclosure {
 	vd u0, v0, u1, v1, fourth_max;
 };
@@ -107,12 +106,12 @@ LANE_INLINE struct enclosure enclosure_of_velocity(const struct motion *m, int o
 	return (struct enclosure){m->u.c[1], 2.0 * m->u.c[2], m->end.v, end, fourth_max};
 }
 
-/* Lanes in which a guard may cross a level inside a step that it starts on the right side of.
+/* Lanes in which a guard may cross a level inside a step; it starts on the permitted side.
  *
- * Given    sign  +1: it must not rise above the level, -1: it must not fall below
+ * Given    sign  +1: permitted below the level, -1: above
  *
- * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and misses g by at
- * most fourth_max/24 t^2 (1 - t)^2 <= fourth_max/384.  So g stays negative when the points behind g0 are below -fourth_max/288 (see
+ * With g = sign (u - level) the cubic through the ends has the control points g0 <= 0, b1, b2, g1, and differs from g by at
+ * most fourth_max/24 t^2 (1 - t)^2 <= fourth_max/384.  So g stays negative when the points after g0 are below -fourth_max/288 (see
  * POUND_CUBIC_ERROR), and also, from a start on the level itself, when b1 <= 0, g1 <= 0 and 3 b2 + fourth_max/24 <= 0.
  */
 LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
@@ -126,8 +125,8 @@ LANE_INLINE vm may_cross(const struct enclosure *c, vd level, vd sign)
 	return inside & after;
 }
 
-/* Bound from below of a guard's rate over a step: the velocity's control points are its own at the ends and the third below;
- * they miss it by sqrt(3)/216 of the fourth derivative at most. */
+/* Lower bound of a guard's rate over a step: the rate's control points are its values at the ends and `middle`;
+ * they differ from it by at most sqrt(3)/216 of the fourth derivative. */
 LANE_INLINE vd enclosure_slowest(const struct enclosure *c)
 {
 	vd middle = vfma(vsplat(3), c->u1 - c->u0, -(c->v0 + c->v1));
@@ -142,20 +141,20 @@ LANE_INLINE vd reach_of(const struct motion *m)
 	return vfma(vsplat(POUND_CUBIC_ERROR), m->fourth_max, vmax(vabs(b1), vabs(b2)));
 }
 
-/* what a search finds: these, or a number of the solver's own from EVENT_OWN on */
+/* result of a search: one of these, or an event of the solver from EVENT_OWN on */
 enum {
 	EVENT_NONE,
-	EVENT_CUT, /* a search was unsure: up to here nothing happens */
+	EVENT_CUT, /* a search was unsure: no event up to this time */
 	EVENT_OWN,
 };
 
 /* First event found so far in each lane. */
 struct search {
-	vd time;  /* as a share of the step, 1: none yet */
-	vd event; /* as a double */
+	vd time;  /* fraction of the step, 1: none yet */
+	vd event; /* event number as a double */
 };
 
-/* Second derivative of a series, from its first half: what is left out is near 1e-4 of it. */
+/* Second derivative of a series, from its lower half: the omitted terms are near 1e-4 of it. */
 LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 {
 	vd sum = vsplat(0);
@@ -167,11 +166,11 @@ LANE_INLINE vd curvature_at(const struct power *s, int order, vd t)
 	return sum;
 }
 
-/* A guard g = sign (u - level) that an event waits for: positive beyond it. */
+/* A guard g = sign (u - level): the event is where it becomes positive. */
 struct guard {
 	const struct power *u;
 	vd level, sign;
-	vd g0, g1;     /* its values at the start of the step, not positive but for rounding, and at the end */
+	vd g0, g1;     /* its values at the start of the step (<= 0 except for rounding) and at the end */
 	vd fourth_max; /* bound of its fourth derivative over the step */
 };
 
@@ -185,7 +184,7 @@ LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure 
 	                      .fourth_max = c->fourth_max};
 }
 
-/* First root by Halley's method where the guard is positive at the limit, with a proof that it is the first.
+/* First root by Halley's method if the guard is positive at the limit, with a proof that it is the first.
  *
  * Given    g       with g1 at the limit, the last time of interest
  *          active  lanes to search
@@ -198,7 +197,7 @@ LANE_INLINE struct guard guard_of(const struct power *u, const struct enclosure 
 LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active, vd *root_time)
 {
 	const struct power *u = g->u;
-	// in registers: a write through a pointer may change what another points to
+	// local copies stay in registers: a write through a pointer could alias them
 	const vd sign = g->sign, level = g->level, g0 = g->g0, g1 = g->g1, fourth_max = g->fourth_max;
 	vd zero = vsplat(0), d0 = sign * u->c[1], slope = zero;
 	vm sure = active & vless(zero, g1) & (vless(g0, zero) | vless(d0, zero));
@@ -216,13 +215,13 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
 		vd next = vselect(rises, vmin(vmax(t - value * slope / fall, zero), limit), limit);
 		vd step = next - t;
 		t = vselect(converged, t, next);
-		// the error after a step of s is near s (s curvature/slope)^2, and s^2/slope times what curvature leaves out: 1e-4 of the
-		// magnitudes of its terms, so that near an inflection 1e-13 of the whole step may remain
+		// the error after a step of s is near s (s curvature/slope)^2 + s^2/slope times the error of curvature_at: 1e-4 of the
+		// magnitudes of its terms, so near an inflection an error of 1e-13 of the whole step may remain
 		vd small = vsplat(0x1p-20);
 		converged |= vless(vabs(step), small * t) & vless(vabs(step * curvature), small * slope) & rises;
 	}
 	*root_time = t;
-	// the slope is that before the last step, which changed it by less than 2^-20
+	// the slope is from before the last step, which changed it by less than 2^-20
 	return sure & converged & ~vless(zero, vfma(d0, t * vsplat(1.0 / 3), g0)) &
 	       vless(fourth_max * (t * t * t) * vsplat(1.01 / 24), slope);
 }
@@ -231,8 +230,8 @@ LANE_SHARED vm root_quick(const struct guard *g, int order, vd limit, vm active,
  *
  * Given    g       guard, g(0) < 0 in the active lanes
  *          limit   last time of interest
- * Returns  value   lanes with a root; t: that time, or where the search had to give up (`unsure`), a safe time:
- *                  where the guard does not rise and the parabola still says a rounding is too long a step
+ * Returns  value   lanes with a root; t: that time, or a safe time if the search gave up (`unsure`):
+ *                  the guard does not rise there and the parabola permits only steps below rounding
  *
  * A parabola with the guard's value and slope at t and with a bound of its curvature lies above the guard, so no
  * root lies before the parabola's; stepping from root to root converges quadratically to the guard's first root and
@@ -267,14 +266,14 @@ LANE_SHARED vm root_safe(const struct power *g, int order, vm active, vd limit, 
 	return found;
 }
 
-/* The safe search on any guard; EVENT_CUT is noted where the step is only cut at a safe time.
+/* The safe search on any guard; the event is EVENT_CUT if the search gave up at a safe time.
  *
- * A guard that starts at exactly 0 is divided by the powers of time it starts with: the sign of its first term decides.
+ * A guard that is exactly 0 at the start is divided by its leading power of time: the sign of its first term decides.
  */
 LANE_SHARED void search_safe(struct power *guard, int order, vm active, vd event, struct search *search)
 {
 	vd zero = vsplat(0), large = zero;
-	// squares are taken: what would vanish in them is raised by a power of two
+	// scaled by a power of two where the squares taken below would underflow
 	for (int n = 0; n <= order; n++)
 		large = vmax(large, vabs(guard->c[n]));
 	vd raise = vselect(vless(large, vsplat(0x1p-400)), vsplat(0x1p600), vsplat(1));
@@ -306,11 +305,11 @@ static void motion_velocity(struct power *v, const struct motion *m, int order)
 	v->c[order] = vsplat(0);
 }
 
-/* Looks for the first time at which a guard crosses a level, and notes it as the event where it comes first.
+/* Searches for the first time at which a guard crosses its level, and records it if it precedes the event found so far.
  *
  * Given    active  lanes to search
- *          event   what to note
- * Returns  search  time and event of the lanes that have one, up to the time already there
+ *          event   the event to record
+ * Returns  search  time and event, in the lanes with a root before the time already there
  */
 LANE_INLINE void search_crossing(struct guard *g, int order, vm active, vd event, struct search *search)
 {

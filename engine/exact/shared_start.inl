@@ -1,10 +1,10 @@
-/* shared_start.inl - tasks that differ in nothing but their laws, run as one simulation as long as no edge of a branch decides.
+/* shared_start.inl - tasks that differ only in their laws, run as one simulation until one of them may leave its first branch.
  *
- * Included by exact.inl alone, once per lane count.  All laws start on the same elastic branch.  A family goes along it between
- * the edges nearest to it.  Where one of them decides what it does next, or may, that is taken back: a member leaves, to go on
- * from there by itself, and the others try again.  Every proof and search that finds nothing of an edge finds nothing of one
- * farther away.  So every member does what it would have done alone, to the last bit; who leaves first, and when, is of no
- * consequence for that.
+ * Included by exact.inl alone, once per lane count.  All laws start on the same elastic branch.  A shared simulation uses the
+ * nearest edges of all its tasks.  If an edge decides a step, or may, the step is undone: one task leaves and continues
+ * separately from there, and the others repeat the step.  A proof or search that excludes an edge also excludes every edge
+ * farther away, so each task's result has the same bits as if it had run alone, whichever task leaves first, and
+ * whenever.
  *
  * Included by exact.inl after next_step.inl. */
 
@@ -16,20 +16,20 @@
 #include "engine/numeric/hash.h"
 
 enum {
-	SHARED_TASKS = 4096,             /* the first of a call's, among which shared_starts are looked for */
-	SHARED_SLOTS = 2 * SHARED_TASKS, /* of their hash table */
+	SHARED_TASKS = 4096,             /* only the first tasks of a call are grouped */
+	SHARED_SLOTS = 2 * SHARED_TASKS, /* slots of their hash table */
 };
 
-/* the shared_starts of a call's tasks */
+/* groups of tasks with a shared start: linked lists, found by a hash table */
 struct shared_starts {
-	// number of a first member and 1, 0: empty; where that family is full, of the next one like it
+	// index of a group's first task + 1, 0: empty; once a group is full, the first task of the next equal group
 	int slot[SHARED_SLOTS];
-	int next[SHARED_TASKS];     /* number of the next member; 0: there is none */
-	bool edged[SHARED_TASKS];   /* of a first member: a law of the family has more than one branch */
-	bool follows[SHARED_TASKS]; /* is not the first of its family */
+	int next[SHARED_TASKS];     /* index of the next task of the group; 0: none */
+	bool edged[SHARED_TASKS];   /* of a first task: a law in the group has more than one branch */
+	bool follows[SHARED_TASKS]; /* not the first task of its group */
 };
 
-/* A zero and its negative make different bits. */
+/* Compares bits: 0 and -0 can give different results. */
 static bool same(double a, double b)
 {
 	return memcmp(&a, &b, sizeof a) == 0;
@@ -41,7 +41,7 @@ static bool bodies_same(const struct pound_task_body *a, const struct pound_task
 	       same(a->drive, b->drive) && same(a->u, b->u) && same(a->v, b->v) && a->followed == b->followed;
 }
 
-/* Whether tasks differ in nothing but their laws. */
+/* Whether tasks differ only in their laws. */
 static bool tasks_same(const struct pound_task *a, const struct pound_task *b)
 {
 	return a->ground == b->ground && a->n_samples == b->n_samples && same(a->time_step, b->time_step) &&
@@ -67,7 +67,7 @@ static int task_slot(const struct pound_task *task, int slots)
 	return pound_hash_slot((uintptr_t)task->ground, numbers, sizeof numbers / sizeof numbers[0], slots);
 }
 
-/* Adds a task to the family whose first member another is, if there is room and one of them may leave its branch. */
+/* Adds a task to the group of another first task, if there is room and a law of either has more than one branch. */
 static void shared_add(struct shared_starts *f, int first, int j)
 {
 	int last = first, members = 1;
@@ -80,7 +80,7 @@ static void shared_add(struct shared_starts *f, int first, int j)
 	f->edged[first] |= f->edged[j];
 }
 
-/* Finds the shared_starts of n tasks. */
+/* Groups n tasks by shared start. */
 static void shared_find(struct shared_starts *f, const struct pound_task *tasks, int n)
 {
 	const int looked = n < SHARED_TASKS ? n : SHARED_TASKS;
@@ -100,13 +100,13 @@ static void shared_find(struct shared_starts *f, const struct pound_task *tasks,
 	}
 }
 
-/* Whether a task is the first of its family: a simulation begins with it. */
+/* Whether a task is the first of its group, and so starts a simulation. */
 static bool shared_first(const struct shared_starts *f, int j)
 {
 	return j >= SHARED_TASKS || !f->follows[j];
 }
 
-/* Whether a law of a task, or of one that goes along with it, has more than one branch. */
+/* Whether a law of a task, or of a task that shares its simulation, has more than one branch. */
 static bool shared_edged(const struct shared_starts *f, const struct pound_task *tasks, int j)
 {
 	return j < SHARED_TASKS ? f->edged[j] : simulation_edged(&tasks[j]);
@@ -120,7 +120,7 @@ static struct pound_branch first_branch(const struct pound_task *task, int i)
 	return at.branch;
 }
 
-/* A simulation goes between its own edges, and nearer ones of those it has with it. */
+/* Sets a simulation's edges to the nearest edges of all its tasks. */
 static void shared_edges(struct simulation *sim)
 {
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -140,7 +140,7 @@ static void shared_edges(struct simulation *sim)
 		sim->traits |= TRAIT_EDGED;
 }
 
-/* Takes the others of its family along with the simulation of the first, which is at its start. */
+/* Adds the other tasks of a group to the simulation of its first task, which is at its start. */
 static void shared_gather(const struct shared_starts *f, const struct pound_task *tasks,
                           struct pound_task_result *results, int first, struct simulation *sim)
 {
@@ -151,8 +151,8 @@ static void shared_gather(const struct shared_starts *f, const struct pound_task
 	shared_edges(sim);
 }
 
-/* How near bodies are to the ends of the first branches of a task's laws: roughly, in which order members will leave.  From
- * rest it is the narrower branch that is nearer to its end. */
+/* Largest |u| over the end of the first branch, of both bodies: estimates in which order tasks will leave.  At rest the
+ * narrower branch counts as nearer (DBL_MIN). */
 static double edge_nearness(const struct simulation *sim, const struct pound_task *task)
 {
 	double share = 0;
@@ -161,17 +161,17 @@ static double edge_nearness(const struct simulation *sim, const struct pound_tas
 	return share;
 }
 
-/* Copies a simulation, as it is before a step. */
+/* Copies a simulation before a step. */
 static void simulation_copy(struct simulation *to, const struct simulation *from)
 {
 	memcpy(to, from, offsetof(struct simulation, own_maps));
 	contact_maps_copy(to, from);
 }
 
-/* The member that seems nearest to an edge leaves the family.
+/* Takes the task that seems nearest to an edge out of a shared simulation.
  *
- * Given    stage  in which it does
- * Returns  own    its simulation, which waits
+ * Given    stage  the stage to repeat
+ * Returns  own    the task's own simulation, to be resumed later
  */
 static void shared_leave(struct simulation *sim, struct simulation *own, enum pound_stage stage)
 {
@@ -187,7 +187,7 @@ static void shared_leave(struct simulation *sim, struct simulation *own, enum po
 	own->n_others = 0;
 	own->stage = stage;
 	if (edge_nearness(sim, leaver.task) < edge_nearness(sim, self.task)) {
-		// it is the one that the others go with: these go with another from here on
+		// the simulation's own task is nearest: another task takes its place
 		sim->task = leaver.task;
 		sim->result = leaver.result;
 		leaver = self;
@@ -202,14 +202,14 @@ static void shared_leave(struct simulation *sim, struct simulation *own, enum po
 	shared_edges(own);
 }
 
-/* One that has left goes on. */
+/* Resumes a task that has left a shared simulation. */
 static void shared_resume(struct simulation *sim, const struct simulation *own)
 {
 	simulation_copy(sim, own);
 	contact_maps_resume(sim, sim->stage);
 }
 
-/* The end of a simulation is that of those who are still with it. */
+/* Copies a simulation's result to the tasks that still share it. */
 static void shared_end(const struct simulation *sim)
 {
 	for (int k = 0; k < sim->n_others; k++)

@@ -1,14 +1,14 @@
 /* step.inl - one step up to an event, by power series in time.
  *
  * Included by exact.inl alone, once per lane count.  A step ends at the first root of a guard (contact opens or closes, an
- * edge of a branch is reached, the velocity turns), found to rounding, or where it was meant to.
+ * edge of a branch is reached, the velocity reverses), found to rounding, or at its planned length.
  *
  * Included by exact.inl after energy.inl. */
 
 /* what ends a step; the event of an edge of body i is EVENT_BODY + EVENT_EDGES i + edge */
 enum { EVENT_CONTACT = EVENT_OWN, EVENT_CLEARS, EVENT_BODY, EVENT_EDGES = 3 };
 
-/* lanes of a step by power series, and what they are */
+/* lanes of a step by power series, and their states */
 struct event_lanes {
 	struct scope scope;
 	vm active;          /* lanes in use */
@@ -16,21 +16,21 @@ struct event_lanes {
 	vm decided;         /* lanes in which an edge of a branch decided how far they went */
 };
 
-/* Derivatives of left, right and overlap by the share of a step that is gone, from one order to the next, and what makes them:
- * all scaled to the step.  Of a body alone only [0] is set; spring and dash are only set while touching. */
+/* Derivatives of left, right and overlap by the elapsed fraction of the step, from one order to the next, and the coefficients of
+ * the equations of motion, all scaled to the step.  For a single body only [0] is set; spring and dash only while touching. */
 struct terms {
 	vd u[3], v[3];            /* derivatives n and n + 1 */
-	vd c[2], k[2];            /* damping and stiffness of each body, with the sign that they act with */
-	vd force[2], increase[2]; /* its forcing at the start of the step, and what that grows by over it */
+	vd c[2], k[2];            /* negative damping and stiffness of each body */
+	vd force[2], increase[2]; /* its forcing at the start of the step, and the increase over the step */
 	vd spring, dash;          /* of the contact */
-	vm still[2];              /* lanes in which a body has no velocity */
-	// where bodies are level
-	vm level;                     /* lanes in which they are, and nothing has decided yet */
+	vm still[2];              /* lanes in which a body has zero velocity */
+	// only for level bodies (bodies_level)
+	vm level;                     /* lanes in which no derivative has separated or closed the bodies yet */
 	struct kinematics by_time[2]; /* derivatives n and n + 1 by time */
 	vd per_time;                  /* the step to the power of n + 2 */
 };
 
-/* Derivatives 0 and 1: where a step starts. */
+/* Derivatives 0 and 1, at the start of a step. */
 LANE_INLINE struct terms terms_start(const struct lanes *g, const struct scope *scope)
 {
 	struct terms t;
@@ -53,21 +53,21 @@ LANE_INLINE struct terms terms_start(const struct lanes *g, const struct scope *
 	return t;
 }
 
-/* Lanes whose bodies touch without overlap, at one velocity but for a rounding. */
+/* Lanes whose bodies are level: zero overlap, and equal velocities to rounding. */
 LANE_INLINE vm bodies_level(const struct lanes *g)
 {
 	vd alike = vsplat(DBL_EPSILON) * (vabs(g->v[0]) + vabs(g->v[1]));
 	return vequal(g->p, vsplat(0)) & ~vless(alike, vabs(g->q));
 }
 
-/* Bodies that are level part or press by the difference of their accelerations.  Where that is no more than the rounding of
- * what these are made of it is nothing, and the next derivative decides: else bodies that are all but alike would part and
- * meet without end.  Derivatives by time decide: those by the share of a step have other roundings in contact than without, where
- * steps are of another length.
+/* Level bodies separate or close by the difference of their accelerations.  A difference below the rounding error of its
+ * terms is set to zero, and the next derivative decides: otherwise nearly identical bodies would separate and meet
+ * endlessly.  Derivatives by time are compared, as derivatives by the fraction of a step round differently in contact and without,
+ * where steps have another length.
  *
- * Given    separating  the difference of the accelerations' derivative n, scaled to the step
- * Returns  t      level: lanes in which nothing has decided yet
- *          value  what is left of it
+ * Given    separating  derivative n of the difference of the accelerations, scaled to the step
+ * Returns  t      level: lanes in which no derivative has decided yet
+ *          value  the difference, or 0
  */
 LANE_SHARED vd separation_zero_rounding(struct terms *t, const struct lanes *g, vd separating, int n)
 {
@@ -91,12 +91,12 @@ LANE_SHARED vd separation_zero_rounding(struct terms *t, const struct lanes *g, 
 	return vselect(t->level, vsplat(0), separating);
 }
 
-/* A body at rest where its branch ends goes on to the next branch or back, as its acceleration decides.  Where that is no more than
- * the rounding of what it is made of it is nothing, and what differs in its later enclosure decides: else each of two branches,
- * with a rounding of its own, would send the body to the other branch without end.
+/* A body at rest on a branch boundary moves to the next branch or back by the sign of its acceleration.  An acceleration below
+ * the rounding error of its terms is set to zero, and higher derivatives decide: otherwise each of two branches, with different
+ * rounding, would send the body to the other one endlessly.
  *
- * Given    b     acceleration of body i, times the square of the step;  push: of the contact, so too, 0 while separated
- *          still  lanes in which it has no velocity
+ * Given    b      acceleration of body i, times the step squared;  push: acceleration by the contact, likewise; 0 while separated
+ *          still  lanes in which the body has zero velocity
  */
 LANE_SHARED vd still_zero_rounding(const struct lanes *g, int i, vd b, vd push, vm still)
 {
@@ -108,9 +108,9 @@ LANE_SHARED vd still_zero_rounding(const struct lanes *g, int i, vd b, vd push, 
 	return vselect(nothing, vsplat(0), b);
 }
 
-/* From the derivatives n and n + 1 to the next.
+/* Advances from derivatives n and n + 1 to n + 1 and n + 2.
  *
- * Given    level  bodies of a lane are
+ * Given    level  the bodies of some lane are level
  */
 LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const struct scope *scope,
                             bool level)
@@ -143,7 +143,7 @@ LANE_INLINE void terms_next(struct terms *t, const struct lanes *g, int n, const
 	}
 }
 
-/* Keeps coefficient n of every motion. */
+/* Stores coefficient n of every motion. */
 LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3], int n, int motions)
 {
 	vd share = vsplat(POUND_FACTOR[n]);
@@ -151,7 +151,7 @@ LANE_INLINE void terms_keep(const struct terms *t, struct motion *const into[3],
 		into[j]->u.c[n] = t->u[j] * share;
 }
 
-/* Looks for the edges of a body's branch. */
+/* Searches for the edges of a body's branch. */
 LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int i, vm active,
                              struct search *search)
 {
@@ -161,7 +161,7 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	vm past_high = may_cross(&c, g->body[i].high, one) & active;
 	vm past_low = may_cross(&c, g->body[i].low, -one) & active;
 	vm reversals = ~vequal(g->body[i].direction, zero) & active;
-	// one search for the lanes that may pass either edge, and another for those that may pass both
+	// one search for the lanes that may pass either edge, and another one for the low edge of lanes that may pass both
 	for (vm past = past_high | past_low; vany(past); past = past_high & past_low, past_high = vmask(0)) {
 		vd level = vselect(past_high, g->body[i].high, g->body[i].low), sign = vselect(past_high, one, -one);
 		vd edge = vselect(past_high, vsplat(POUND_EDGE_HIGH), vsplat(POUND_EDGE_LOW));
@@ -180,10 +180,10 @@ LANE_SHARED void body_search(const struct series *s, const struct lanes *g, int 
 	search_crossing(&guard, s->order, reversals, body + vsplat(POUND_EDGE_REVERSAL), search);
 }
 
-/* Follows the largest displacement of a body inside the step, before what the search found.
+/* Finds the largest displacement of a body inside the step, before the event found by the search.
  *
- * Where the displacement at the first turn is proved to be the largest but for the step's end, it is kept: an error of the
- * turning time enters squared.  Otherwise the step is cut at that turn.
+ * If the displacement at the first velocity reversal is proved to be the largest except for the step's end, it is kept: an error
+ * of the reversal time enters squared.  Otherwise the step is cut at that reversal.
  */
 LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm inside, struct search *search)
 {
@@ -193,7 +193,7 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	motion_velocity(&velocity, m, s->order);
 	const vd *v = velocity.c;
 	vd zero = vsplat(0), one = vsplat(1), t;
-	// which way it goes now: by its velocity, or from rest by its acceleration, or by the rate of that
+	// direction of motion: by the velocity, or from rest by the acceleration, or by its rate
 	vd way = vselect(vequal(v[0], zero), vselect(vequal(v[1], zero), v[2], v[1]), v[0]);
 	vd sign = vselect(vless(way, zero), one, -one);
 	const struct guard reversals = guard_of(&velocity, &c, zero, sign);
@@ -212,10 +212,10 @@ LANE_SHARED void body_top(const struct series *s, struct lanes *g, int i, vm ins
 	search_safe(&guard, s->order, inside, vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL), search);
 }
 
-/* Looks for the end of contact, or of the overlap left, where the dashpot must not pull.
+/* Searches for the end of contact, or of the remaining overlap, if the contact cannot pull.
  *
- * Contact ends when its force p + C/K p' falls through 0 with p > 0 still.  The bodies are then released: the contact goes
- * on when that force rises again, and they separate when p has fallen to 0.
+ * Contact ends when its force p + C/K p' falls through 0 while still p > 0.  The bodies are then released: contact resumes
+ * when this force rises through 0 again, and the bodies are clear when p has fallen to 0.
  */
 LANE_SHARED void force_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
                               vm by_force, struct search *search)
@@ -226,8 +226,8 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
 	motion_velocity(&rate, p, s->order);
 	for (int n = 0; n <= s->order; n++)
 		guard.c[n] = sign * vfma(phase_lead, rate.c[n], p->u.c[n]);
-	// where the force has just passed 0 it is beyond by the rounding of the overlap and of its acceleration, or
-	// equal bodies would reverse at one instant without end
+	// a force that has just passed 0 is taken as beyond it by the rounding error of its terms; otherwise
+	// identical bodies would open and close contact at one instant endlessly
 	vd acceleration = 2.0 * (vabs(s->body[0].u.c[2]) + vabs(s->body[1].u.c[2]));
 	vd below = vmin(guard.c[0], -DBL_EPSILON * vfma(phase_lead, acceleration, p->u.c[0]));
 	guard.c[0] = vselect(e->fresh, below, guard.c[0]);
@@ -239,7 +239,7 @@ LANE_SHARED void force_search(const struct series *s, const struct lanes *g, con
 	search_safe(&guard, s->order, by_force, vsplat(EVENT_CLEARS), search);
 }
 
-/* Looks for the beginning or the end of a contact: the overlap p rises or falls through 0. */
+/* Searches for the beginning or end of a contact: the overlap p rises or falls through 0. */
 LANE_INLINE void contact_search(const struct series *s, const struct lanes *g, const struct event_lanes *e,
                                 struct search *search)
 {
@@ -278,15 +278,15 @@ LANE_INLINE vd impulse_of(const struct lanes *g, const struct series *s, vd time
 	            g->contact_damping * (s->overlap.end.u - s->overlap.u.c[0]));
 }
 
-/* Which bodies' motion a step must look into: the left one's always. */
+/* Number of bodies whose motion inside the step matters: always the left one. */
 LANE_INLINE int bodies_watched(const struct event_lanes *e)
 {
 	return e->scope.paired && (e->scope.edged || e->scope.right) ? 2 : 1;
 }
 
-/* Makes the series of a step, and the bounds of what is looked into.
+/* Computes the series of a step, and the fourth-derivative bounds of the watched motions.
  *
- * Given    level  lanes whose bodies are, or NULL: there are none
+ * Given    level  lanes with level bodies; NULL: none
  */
 LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watched, const struct scope *scope,
                              const vm *level)
@@ -303,7 +303,7 @@ LANE_INLINE void series_make(struct series *s, const struct lanes *g, int watche
 	}
 	ORDERS_UP(n, 0, order, terms_keep(&t, into, n, motions);
 	          if (n < order) terms_next(&t, g, n, scope, level != NULL);)
-	// no result depends on this: what is added up is to be read from memory, or gcc keeps the coefficients there twice
+	// no effect on results: makes gcc read the coefficients from memory, where it would otherwise keep them twice
 	__asm__ volatile("" ::: "memory");
 	for (int j = 0; j < motions; j++)
 		motion_end(into[j], order);
@@ -346,10 +346,10 @@ LANE_INLINE void step_begin(struct series *s, const struct lanes *g, const struc
 		series_contact(s, g, watched);
 	else
 		series_pair(s, g, watched);
-	s->order = e->scope.touching ? ORDER_HIGH : ORDER_LOW; // the compiler is to know it
+	s->order = e->scope.touching ? ORDER_HIGH : ORDER_LOW; // tells the compiler the value
 }
 
-/* Lanes arrive at the end of a step, or of the share `time` of it that was gone. */
+/* Moves lanes to the end of a step, or to the fraction `time` of it. */
 LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct event_lanes *e, vd time,
                           vm arrived)
 {
@@ -371,10 +371,10 @@ LANE_INLINE void step_end(struct lanes *g, const struct series *s, const struct 
 	g->remainder = vselect(arrived, vmax(g->remainder - elapsed, vsplat(0)), g->remainder);
 }
 
-/* One step: every lane goes on to its next event, or as far as it meant to.
+/* One step: every lane advances to its next event, or by the planned step.
  *
- * Given    accounted  a lane's energy balance is kept
- * Returns  value      the events;  e: decided;  g: at the end of the step, dt what it took
+ * Given    accounted  the energy balance is requested for some lane
+ * Returns  value      the events;  e: decided;  g: state at the end of the step, dt: its actual length
  */
 LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted)
 {
@@ -391,10 +391,10 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		e->decided = ~vequal(search.time, before.time) | ~vequal(search.event, before.event);
 	}
 	for (int i = 0; i < bodies_watched(e); i++) {
-		// the end of the step does not count where the motion was cut before it
+		// the end of the step is ignored if an event cuts the step before it
 		vd end = vselect(vless(search.time, one), zero, vabs(s.body[i].end.u));
 		vm inside = vless(vmax(g->top[i], end), reach_of(&s.body[i])) & e->active;
-		// a branch with a direction ends where the velocity reversals: up to what was found neither end is exceeded
+		// a branch with a direction ends where the velocity reverses: before the event found, |u| is largest at an end
 		if (e->scope.edged)
 			inside &= vequal(g->body[i].direction, zero);
 		if (vany(inside))
@@ -405,11 +405,11 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 		series_cut(&s, event, search.time, &e->scope);
 	if (accounted)
 		energy_add(g, &s, search.time, e->scope);
-	// where no time has gone by nothing is to change, not by a rounding
+	// in a step of zero length nothing may change, not even by rounding
 	vm moved = vless(zero, search.time);
 	step_end(g, &s, e, search.time, moved);
 	g->dt = search.time * g->dt;
-	// a body turns with no velocity, but where it had turned before that was noticed
+	// the velocity at a reversal is exactly 0, except in a step of zero length: the reversal was before it
 	for (int i = 0; i < (e->scope.paired ? 2 : 1); i++) {
 		vd reversal = vsplat(EVENT_BODY + EVENT_EDGES * i + POUND_EDGE_REVERSAL);
 		g->v[i] = vselect(vequal(search.event, reversal) & moved, zero, g->v[i]);
@@ -420,7 +420,7 @@ LANE_INLINE vd event_step(struct lanes *g, struct event_lanes *e, bool accounted
 	return search.event;
 }
 
-/* What the beginning or end of a contact, or of the overlap it left, does to a simulation's numbers.
+/* Updates the state at the beginning or end of a contact, or of the overlap that it left.
  *
  * Given    event  of the step
  * Returns  e      released and fresh
@@ -460,7 +460,7 @@ LANE_INLINE vm peak_risk(const struct series *s, const struct lanes *g, int i)
 	return may_cross(&c, top, one) | may_cross(&c, -top, -one);
 }
 
-/* Lanes in which it may reach an edge of its branch. */
+/* Lanes in which a body may reach an edge of its branch. */
 LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 {
 	vd zero = vsplat(0), one = vsplat(1);
@@ -473,7 +473,7 @@ LANE_INLINE vm edge_risk(const struct series *s, const struct lanes *g, int i)
 	return risk | (reversals & may_cross(&c, zero, -g->body[i].direction));
 }
 
-/* Takes what is left of an interval or of a substep as one step, in the lanes where nothing can happen in it.
+/* Finishes the remainder of an interval or substep in one step, in the lanes where no event can occur in it.
  *
  * Returns  e  decided
  */
@@ -492,7 +492,7 @@ LANE_INLINE void event_finish(struct lanes *g, struct event_lanes *e, vm finishi
 	if (e->scope.paired) {
 		struct enclosure c = enclosure_of(&s.overlap);
 		risk = may_cross(&c, zero, e->scope.touching ? -one : one);
-		// as long as the overlap grows its force does not end
+		// while the overlap grows, the force does not fall to zero
 		if (e->scope.touching && e->scope.forced)
 			risk |= ~vless(zero, enclosure_slowest(&c)) & vless(zero, g->release);
 	}

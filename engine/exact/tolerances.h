@@ -1,4 +1,4 @@
-/* tolerances.h - what those who follow a motion from step to step have in common.
+/* tolerances.h - tolerances and constants shared by all integrators that step from event to event.
  *
  * No code, only numbers: the exact solver, a floor's pieces and the oscillators on it read them. */
 #ifndef TOLERANCES_H
@@ -7,12 +7,12 @@
 #include <float.h>
 #include <math.h>
 
-/* A motion as small as this is over when the ground is silent [m]: of the overlap that it makes, which the stiffest contacts
- * leave a rounding of it, the roundings are at the end of the normal numbers.  Below nothing could be proved of it any more,
- * and every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (request.c). */
+/* A motion below this is set to rest while the ground does not move [m].  The stiffest contacts have overlaps of a rounding error of
+ * the motion, and the rounding errors of these are then the smallest normal numbers.  Below, bounds prove nothing, and
+ * every operation takes a hundred times as long.  The ground's largest acceleration is near 1 m/s2 (request.c). */
 static const double POUND_AT_REST = DBL_MIN / (DBL_EPSILON * DBL_EPSILON);
 
-/* Of what an acceleration is made of: no more than this of it is a rounding, and decides nothing. */
+/* An acceleration below this fraction of the magnitudes of its terms is rounding error, and its sign is meaningless. */
 static const double POUND_UNDECIDED = 4 * DBL_EPSILON;
 
 /* How far the inner control points of the cubic through both ends of an interval h must stay inside a limit, over h^4 max
@@ -27,8 +27,8 @@ static const double POUND_TERMS_REACH[] = {0,        5.548e-17, 1.053e-08, 6.928
                                            0.2336,   0.3182,    0.417,     0.5295,    0.6552,   0.7934,
                                            0.9437,   1.105,     1.277,     1.459,     1.651,    INFINITY};
 
-/* A step that a search was unsure of is followed by one this much shorter, and then by longer ones again: what decides
- * may be far below the rounding of a whole step. */
+/* After an unsure search the next step is shorter by this factor, and later steps are longer again: the deciding quantity
+ * may be far below the rounding error of a whole step. */
 static const double POUND_STEP_SHORTER = 0x1p-8, POUND_STEP_SHORTEST = 0x1p-400, POUND_STEP_LONGER = 0x1p4;
 
 enum { POUND_STEPS_LIMIT = 1 << 19 }; /* of a simulation in one sample interval: more is chatter */
@@ -44,13 +44,13 @@ static const double POUND_GAUSS_WEIGHT[POUND_GAUSS / 2] = {0.249147045813402785,
                                                            0.203167426723065922, 0.160078328543346226,
                                                            0.106939325995318431, 0.047175336386511827};
 
-/* 1/(n + 1): what leads from a coefficient of a series to the next of its integral. */
+/* 1/(n + 1): factor from coefficient n of a series to coefficient n + 1 of its integral. */
 static const double POUND_SHARE[] = {1.0 / 1,  1.0 / 2,  1.0 / 3,  1.0 / 4,  1.0 / 5,  1.0 / 6,
                                      1.0 / 7,  1.0 / 8,  1.0 / 9,  1.0 / 10, 1.0 / 11, 1.0 / 12,
                                      1.0 / 13, 1.0 / 14, 1.0 / 15, 1.0 / 16, 1.0 / 17, 1.0 / 18,
                                      1.0 / 19, 1.0 / 20, 1.0 / 21, 1.0 / 22, 1.0 / 23, 1.0 / 24};
 
-/* 1/n!: what makes coefficients of derivatives. */
+/* 1/n!: factor from derivative n to coefficient n. */
 static const double POUND_FACTOR[] = {1 / 1.0,
                                       1 / 1.0,
                                       1 / 2.0,
