@@ -1,7 +1,8 @@
 /* demand.c - the search for the yield displacement that gives a target demand, one response after the other.
  *
- * The demand is a continuous function of the yield displacement, and falls from any to 0 in the large; on logarithmic scales
- * its slope is -1 where the body does not yield. */
+ * The demand falls to 0 as the yield displacement grows, and takes arbitrarily large values as it decreases; on logarithmic scales its slope is -1
+ * where the body does not yield.  It is continuous where the law's force depends continuously on the history: the search
+ * reports a jump otherwise. */
 #include "engine/run/demand.h"
 
 #include <math.h>

@@ -13,6 +13,7 @@
 #include "schema/study/study_json.h"
 #include "tests/support/baseline_loop.h"
 #include "tests/support/oracle.h"
+#include "tests/support/scenes.h"
 
 enum {
 	SIGNALS = 1000,
@@ -284,7 +285,7 @@ static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 /* Time of a run for every law, with the yield displacement at half of what each body reaches alone. */
 static void law_rows(const struct batch *linear, const struct batch *apart)
 {
-	enum { LAWS = 4 };
+	enum { LAWS = SPECIMEN_LAWS };
 	struct batch batches[LAWS];
 	struct bench_job jobs[LAWS];
 	for (int law = 0; law < LAWS; law++) {

@@ -1,4 +1,4 @@
-/* oracle_law.c - the four laws from their definitions, for the oracle.
+/* oracle_law.c - the laws from their definitions, for the oracle.
  *
  * Forces come from a slider's place, a curve and the farthest points, not from pieces and edges. */
 #include "tests/support/oracle.h"

@@ -164,7 +164,7 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	scene->law = common;
 }
 
-/* Makes a scene out of a number: every fourth has the same law, and so on. */
+/* Makes a scene out of a number: laws alternate, and so on. */
 void specimen_random(struct specimen *specimen, int number, double time_step, int n)
 {
 	uint64_t stream = 1000 + (uint64_t)number;

@@ -194,11 +194,13 @@ static void tasks_fill(struct pound_task *tasks, double *ground, uint64_t seed)
 		                               .tension = t % 2};
 		for (int i = 0; i < 2; i++) {
 			double w = 2 * PI * specimen_uniform(&seed, 0.5, 5.5);
-			tasks[t].bodies[i] = (struct pound_task_body){
-			    .backbone = {.law = t % 4, .stiffness = w * w, .hardening = 0.05, .yield = 0.3 / (w * w)},
-			    .damping = 0.1 * w,
-			    .drive = 1,
-			    .followed = i == 0 || t % 3 == 0};
+			tasks[t].bodies[i] = (struct pound_task_body){.backbone = {.law = t % SPECIMEN_LAWS,
+			                                                           .stiffness = w * w,
+			                                                           .hardening = 0.05,
+			                                                           .yield = 0.3 / (w * w)},
+			                                              .damping = 0.1 * w,
+			                                              .drive = 1,
+			                                              .followed = i == 0 || t % 3 == 0};
 			stiffness = fmax(stiffness, w * w * (i ? 1 / ratio : 1));
 		}
 		tasks[t].contact_stiffness = contact * stiffness;

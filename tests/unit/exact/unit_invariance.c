@@ -297,7 +297,7 @@ static void energy_only_falls_once_the_ground_is_still(void **state)
 static void twice_every_frequency_and_half_the_step_leaves_the_paper_s_outputs_bit_for_bit(void **state)
 {
 	(void)state;
-	for (int l = 0; l < 4; l++) {
+	for (int l = 0; l < SPECIMEN_LAWS; l++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
 		specimen_law(&specimen, specimen_laws[l], 0);

@@ -299,7 +299,7 @@ static void a_pounding_specimen(struct specimen *specimen, const char *law)
 static void the_error_falls_with_the_fourth_power_of_the_step(void **state)
 {
 	(void)state;
-	for (int k = 0; k < 4; k++) {
+	for (int k = 0; k < SPECIMEN_LAWS; k++) {
 		struct specimen specimen;
 		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_response a = specimen_oracle(&specimen, 0.04);
@@ -315,7 +315,7 @@ static void the_error_falls_with_the_fourth_power_of_the_step(void **state)
 static void locating_nothing_gives_the_same_answers_in_the_limit(void **state)
 {
 	(void)state;
-	for (int k = 0; k < 4; k++) {
+	for (int k = 0; k < SPECIMEN_LAWS; k++) {
 		struct specimen specimen;
 		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_response want = specimen_oracle(&specimen, 0.005);
@@ -366,7 +366,7 @@ static void the_yield_displacement_is_the_elastic_one_over_the_reduction_factor(
 static void a_correction_divides_the_largest_displacement_by_the_target(void **state)
 {
 	(void)state;
-	for (int k = 1; k < 4; k++) {
+	for (int k = 1; k < SPECIMEN_LAWS; k++) {
 		struct specimen specimen;
 		a_pounding_specimen(&specimen, specimen_laws[k]);
 		struct pound_scene *scene = &specimen.study.scene;

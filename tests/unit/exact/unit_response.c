@@ -351,10 +351,10 @@ static void equal_oscillators_never_press_on_each_other(void **state)
 	struct pound_scene *scene = &specimen.study.scene;
 	specimen_noise(&specimen, 3, 1, 0.01, 501);
 	scene->oscillators[1].frequency_hz = scene->oscillators[0].frequency_hz;
-	for (int k = 0; k < 4; k++) {
-		scene->law.type = k; // every law
-		scene->oscillators[1].mass = (double[]){1, 0.3, 7, 2}[k];
-		scene->contact.restitution = (double[]){0, 0.4, 1, 0.6}[k];
+	for (int k = 0; k < SPECIMEN_LAWS; k++) {
+		scene->law.type = k;
+		scene->oscillators[1].mass = (double[]){1, 0.3, 7, 2}[k % 4];
+		scene->contact.restitution = (double[]){0, 0.4, 1, 0.6}[k % 4];
 		struct pound_response r = specimen_engine(&specimen);
 		check_near(r.impulse_max, 0, 0);
 		check_near(r.displacement_max_1, r.displacement_max_free_1, 0);
@@ -368,7 +368,7 @@ static void equal_oscillators_never_press_on_each_other(void **state)
 static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **state)
 {
 	(void)state;
-	for (int k = 0; k < 8; k++) {
+	for (int k = 0; k < 2 * SPECIMEN_LAWS; k++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
 		struct pound_scene *scene = &specimen.study.scene;
@@ -390,7 +390,7 @@ static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **sta
 static void a_gap_that_is_never_reached_leaves_both_free(void **state)
 {
 	(void)state;
-	for (int l = 0; l < 4; l++) {
+	for (int l = 0; l < SPECIMEN_LAWS; l++) {
 		struct specimen specimen;
 		specimen_init(&specimen);
 		struct pound_scene *scene = &specimen.study.scene;

@@ -217,6 +217,7 @@ static void a_law_gives_back_what_it_does_on_the_way_to_no_force(void **state)
 		push_start(&push, law_row(cases[k].law), 1, cases[k].hardening);
 		push_to(&push, cases[k].to);
 		const double gives = pound_law_given_back(&push.backbone, &push.at, push.u), before = push.work;
+		check_near(pound_law_residual(&push.backbone, &push.at, push.u), cases[k].back, 1e-15);
 		push_to(&push, cases[k].back);
 		check_near(push.force, 0, 1e-15);
 		check_near(before - push.work, gives, 1e-14);
