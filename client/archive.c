@@ -1,4 +1,4 @@
-/* archive.c - a finished study as a folder of its own: what was asked, what came out, by which versions, and checksums of it. */
+/* archive.c - a finished study as a folder: its document, its results, the versions that made them, and checksums. */
 #include "client/answer.h"
 #include "client/follow.h"
 #include "schema/json/json_pointer.h"

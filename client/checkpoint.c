@@ -3,7 +3,7 @@
  *   "pound checkpoint VERSION HASH\n"       of the program and of the study's meaning
  *   number n digest values                  two 32-bit numbers, SHA-256 over head, number, n and values, n doubles
  *
- * A record that is not whole, or not what was written, ends what counts; it is cut off, and its blocks run again. */
+ * Reading stops at the first incomplete or damaged record; the file is truncated there, and the missing blocks run again. */
 #include "client/checkpoint.h"
 
 #include <errno.h>

@@ -2,7 +2,7 @@
  *
  * 1. Threads of this process and the coordinator's worker groups take blocks in any order.
  * 2. The threads of this process make the reductions.
- * 3. The calling thread draws the progress bar and looks for Ctrl-C. */
+ * 3. The calling thread draws the progress bar and checks for Ctrl-C. */
 #include "client/compute.h"
 
 #include <pthread.h>

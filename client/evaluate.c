@@ -1,7 +1,7 @@
-/* evaluate.c - `pound evaluate`: a study's design run on a model that a server of the UM-Bridge protocol 1.0 has.
+/* evaluate.c - `pound evaluate`: runs a study's design on a model of a server that speaks the UM-Bridge protocol 1.0.
  *
  * 1. The model's sizes must fit the study.
- * 2. Each sample, or replicate of one, is a run: taken from the journal, or asked of the server, several at a time.
+ * 2. Each sample, or replicate of one, is a run: taken from the journal, or requested from the server, several at a time.
  * 3. Outputs are placed by the number of their run, so the order of the answers does not matter; they become the CSV that
  *    `pound indices` reads.
  *
@@ -323,7 +323,7 @@ static bool outputs_read(struct evaluation *e, const struct wire_reply *reply, d
 	return fits;
 }
 
-/* Whether an answer is that of a run, and not of a server on the way or of one that knows no such model. */
+/* Whether an answer is the result of a run, not an answer of a proxy or of a server without this model. */
 static bool is_of_run(const struct wire_reply *reply)
 {
 	if (reply->status != HTTP_BAD_REQUEST)

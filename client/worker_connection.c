@@ -267,7 +267,7 @@ struct worker_options worker_options(int argc, char **argv)
 	                                        "by --worker-listen.\vA launcher sets POUND_WORKER, which says "
 	                                        "where to connect: HOST:PORT:TOKEN."};
 	struct worker_options options = {.n_threads = cores()};
-	argp_err_exit_status = 2; // as that of pound
+	argp_err_exit_status = 2; // as in pound
 	argp_parse(&argp, argc, argv, 0, NULL, &options);
 	return options;
 }
