@@ -80,7 +80,7 @@ static double now(void)
 
 /* ---- the model ---- */
 
-/* What an answer says is wrong: its type and message, or its status. */
+/* The error in an answer: its type and message, or its status. */
 static void complain_of(const struct evaluation *e, const struct wire_reply *reply)
 {
 	struct reading *r = reading_open(reply->body, reply->n_body);
@@ -188,7 +188,7 @@ static enum outcome read_sizes(const struct evaluation *e, const char *path, con
 	return outcome;
 }
 
-/* Takes the configuration, which must be an object, and makes a place for the seed in it. */
+/* Reads the configuration, which must be a JSON object, and prepares its member for the seed. */
 static enum outcome take_config(struct evaluation *e)
 {
 	const char *text = e->options->evaluate.config ? e->options->evaluate.config : "{}",
@@ -371,7 +371,7 @@ static enum outcome job_end(struct evaluation *e, struct job *job, enum outcome 
 	return outcome;
 }
 
-/* Gives every job that has none a run, and sends what is due. */
+/* Assigns a run to every idle job, and sends the requests that are due. */
 static void jobs_begin(struct evaluation *e, struct wire_jobs *wires, struct job *jobs, long *next)
 {
 	const double time = now();

@@ -166,7 +166,7 @@ static bool put(struct thread_pool *pool, struct work_study *s, int block)
 	return true;
 }
 
-/* What a message means for the study it names (NULL: there is none). */
+/* Executes a message for the study it names (NULL: no such study). */
 static bool obey(struct thread_pool *pool, const struct message *m, struct work_study *s, char **body)
 {
 	switch ((enum message_type)m->type) {
