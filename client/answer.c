@@ -51,7 +51,7 @@ char *answer_path(struct wire *wire, const char *id, const char *rest)
 	return path;
 }
 
-/* Sends a request about one study, its path that of the study and the rest, and judges the answer. */
+/* Sends a request to /v1/studies/{id}{rest} and checks the answer. */
 enum outcome answer_about(struct wire *wire, struct wire_request request, const char *id, const char *rest,
                           struct wire_reply *reply)
 {

@@ -1,10 +1,10 @@
-/* answer.h - requests, with one way to report their failures. */
+/* answer.h - requests to the server, with common reporting of failures. */
 #ifndef ANSWER_H
 #define ANSWER_H
 
 #include "client/wire.h"
 
-/* Sends a request about `subject` (a file, an id) and judges the answer; `reply` is to be freed in any case. */
+/* Sends a request about `subject` (a file, an id) and checks the answer; the caller frees `reply` in any case. */
 enum outcome answer_take(struct wire *wire, const struct wire_request *request, const char *subject,
                          struct wire_reply *reply);
 
@@ -12,8 +12,8 @@ enum outcome answer_take(struct wire *wire, const struct wire_request *request, 
 enum outcome answer_about(struct wire *wire, struct wire_request request, const char *id, const char *rest,
                           struct wire_reply *reply);
 
-/* What came of wire_send; what is not a success is said on stderr:
- * OUTCOME_UNREACHED, OUTCOME_USAGE (the study is invalid, the URL is none) or OUTCOME_FAILED. */
+/* The outcome of a request after wire_send; failures are reported on stderr:
+ * OUTCOME_UNREACHED, OUTCOME_USAGE (the study or the URL is invalid) or OUTCOME_FAILED. */
 enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char *subject,
                           const struct wire_reply *reply);
 

@@ -1,4 +1,4 @@
-/* archive.c - a finished study as a folder of its own: what was asked, what came out, by which versions, and checksums of it. */
+/* archive.c - a finished study as a folder: its document, its results, the versions that made them, and checksums. */
 #include "client/answer.h"
 #include "client/follow.h"
 #include "schema/json/json_pointer.h"
@@ -33,7 +33,7 @@ static enum outcome unwritten(const struct archive *archive, const char *name)
 	return OUTCOME_FAILED;
 }
 
-/* Makes an empty file of the archive; NULL: errno says why not. */
+/* Creates an empty file of the archive; NULL: see errno. */
 static FILE *file_new(const struct archive *archive, const char *name)
 {
 	char *path = command_text("%s/%s", archive->folder, name);
@@ -42,7 +42,7 @@ static FILE *file_new(const struct archive *archive, const char *name)
 	return file;
 }
 
-/* Brings a file to the disk and closes it. */
+/* Syncs a file and closes it. */
 static bool file_done(FILE *file)
 {
 	const bool kept = fflush(file) == 0 && !ferror(file) && fsync(fileno(file)) == 0;
@@ -113,7 +113,7 @@ static enum outcome versions(struct archive *archive, const char *engine)
 	return outcome;
 }
 
-/* Everything but the result, which is there already. */
+/* Writes all files except the result, which is written already. */
 static enum outcome fill(struct archive *archive, const struct wire_reply *result)
 {
 	const bool npy = strcmp(archive->options->format, "npy") == 0;
@@ -133,7 +133,7 @@ static enum outcome fill(struct archive *archive, const struct wire_reply *resul
 	return outcome;
 }
 
-/* Deletes what was written of an archive that did not get whole. */
+/* Deletes the files of an incomplete archive. */
 static void discard(const struct archive *archive)
 {
 	static const char *const names[] = {"result.json", "versions.json", "study.json", "status.json",
@@ -146,7 +146,7 @@ static void discard(const struct archive *archive)
 	rmdir(archive->folder);
 }
 
-/* Writes the folder under another name, and gives it its own when it is whole. */
+/* Writes the folder under a temporary name, and renames it when it is complete. */
 static enum outcome folder_make(struct archive *archive, const char *folder, const struct wire_reply *result)
 {
 	archive->folder = command_text("%s.partial", folder);
@@ -171,7 +171,7 @@ static enum outcome folder_make(struct archive *archive, const char *folder, con
 	return outcome;
 }
 
-/* `pound archive ID [FOLDER]`: the folder is whole, or there is none.
+/* `pound archive ID [FOLDER]`: the folder is complete, or does not exist.
  *
  * Returns  value   OUTCOME_STUDY_FAILED when the study will never have a result, OUTCOME_FAILED when it has none yet
  * Test     client_archive: an_archive_has_everything_and_its_checksums_hold

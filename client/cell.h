@@ -1,16 +1,16 @@
-/* cell.h - what tables of all kinds say about a cell of a result. */
+/* cell.h - lines about a cell of a result that all kinds of tables print. */
 #ifndef CELL_H
 #define CELL_H
 
 #include "schema/json/json_pointer.h"
 
-/* A line of the swept fields and their values in this cell; nothing where nothing is swept. */
+/* Prints a line with the swept fields and their values in this cell; nothing without a sweep. */
 void cell_sweep(const struct reading *result, int cell);
 
-/* A line that counts its runs without a result, if there are any; `at` is the JSON Pointer of the cell in the result. */
+/* Prints a line that counts its failed runs, if there are any; `at` is the JSON Pointer of the cell in the result. */
 void cell_failed(const struct reading *result, const char *at);
 
-/* One number of an output: its member, how it is written after those before it, and what it is written times. */
+/* One number of an output: its member, its printf format with the text before it, and a factor. */
 struct measure {
 	const char *member, *format;
 	double times;

@@ -3,7 +3,7 @@
  *   "pound checkpoint VERSION HASH\n"       of the program and of the study's meaning
  *   number n digest values                  two 32-bit numbers, SHA-256 over head, number, n and values, n doubles
  *
- * A record that is not whole, or not what was written, ends what counts; it is cut off, and its blocks run again. */
+ * Reading stops at the first incomplete or damaged record; the file is truncated there, and the missing blocks run again. */
 #include "client/checkpoint.h"
 
 #include <errno.h>
@@ -48,7 +48,7 @@ static void digest_of(const struct checkpoint *c, const struct record *record, c
 	sha256_digest(&hash, SHA256_DIGEST_SIZE, digest);
 }
 
-/* Restores the records that are whole.
+/* Restores the complete records.
  *
  * Returns  value   where the file is to end; -1: no memory
  */
@@ -80,7 +80,7 @@ static off_t records_read(struct checkpoint *c, checkpoint_restored *restored, v
 	return at;
 }
 
-/* NULL: done, or what is wrong. */
+/* NULL, or what is wrong. */
 static const char *file_take(struct checkpoint *c, checkpoint_restored *restored, void *to)
 {
 	char head[sizeof c->head] = "";

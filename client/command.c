@@ -1,4 +1,4 @@
-/* command.c - what every subcommand may call: one line of complaint, texts and memory of its own. */
+/* command.c - functions for all subcommands: error lines on stderr, allocated texts and memory. */
 #include "client/command.h"
 
 #include <stdarg.h>

@@ -2,7 +2,7 @@
  *
  * 1. Threads of this process and the coordinator's worker groups take blocks in any order.
  * 2. The threads of this process make the reductions.
- * 3. The calling thread draws the progress bar and looks for Ctrl-C. */
+ * 3. The calling thread draws the progress bar and checks for Ctrl-C. */
 #include "client/compute.h"
 
 #include <pthread.h>
@@ -63,7 +63,7 @@ static void block_end(struct pool *pool, int block, enum pound_status status)
 	pthread_cond_broadcast(&pool->changed);
 }
 
-/* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: there is none now.  Under the lock. */
+/* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: none now.  Under the lock. */
 static int block_take(struct pool *pool, int taker)
 {
 	const double now = seconds();
@@ -239,7 +239,7 @@ static void watch(struct pool *pool, int n, double start)
 	}
 }
 
-/* Runs the blocks that are left, or all reductions, in n threads. */
+/* Runs the remaining blocks, or all reductions, in n threads. */
 static void pool_run(struct pool *pool, struct member *members, int n, double start)
 {
 	int started = 0;
@@ -262,7 +262,7 @@ static void restored(void *to, int block)
 	assignment_restore(&pool->blocks, block);
 }
 
-/* Blocks that are done of the first n. */
+/* The number of finished blocks among the first n. */
 static int done_of(const struct pool *pool, int n)
 {
 	int done = 0;

@@ -1,4 +1,4 @@
-/* compute.h - the blocks and reductions of one run, by threads of this process and workers elsewhere. */
+/* compute.h - the blocks and reductions of one run, by threads of this process and workers in other processes. */
 #ifndef COMPUTE_H
 #define COMPUTE_H
 
@@ -19,8 +19,8 @@ struct compute {
 	const struct launch *launch;    /* of workers in other processes */
 	const char *checkpoint;         /* file of finished blocks, NULL: none */
 	const atomic_bool *interrupted; /* by the user */
-	double elsewhere_s;             /* CPU time of the blocks that were run elsewhere [s] */
-	bool refused;                   /* the checkpoint cannot be used: it was said why */
+	double elsewhere_s;             /* CPU time of the blocks run by workers in other processes [s] */
+	bool refused;                   /* the checkpoint cannot be used: reported on stderr */
 };
 
 enum pound_status compute_run(struct compute *compute);

@@ -157,7 +157,7 @@ char *document_file(const char *path, const struct study_source *of, size_t *len
 	return bytes;
 }
 
-/* Lists what is wrong with a document, in the order of the reply. */
+/* Lists the problems of a document, in the order of the reply. */
 void document_complain(const char *subject, const struct reading *problem)
 {
 	int n = reading_count(problem, "/errors");

@@ -1,4 +1,4 @@
-/* document.h - a study document as a file or standard input, and what is said about a bad one. */
+/* document.h - study documents from a file or standard input, and messages about invalid ones. */
 #ifndef DOCUMENT_H
 #define DOCUMENT_H
 
@@ -9,35 +9,36 @@
 
 #include <stddef.h>
 
-/* What a document is called in messages. */
+/* The name of a document in messages. */
 const char *document_name(const char *path);
 
-/* The whole file, or standard input for "-"; on the heap.  NULL: said on stderr why. */
+/* The whole file, or standard input for "-"; on the heap.  NULL: reported on stderr. */
 char *document_read(const char *path, size_t *length);
 
-/* The same with the samples of the files of ground motions that it names, their paths from its folder; NULL: with the outcome,
- * said on stderr why. */
+/* The same with the samples of the ground motion files that it names (paths relative to its folder) in place of them; NULL: with the
+ * outcome, reported on stderr. */
 char *document_whole(const char *path, size_t *length, enum outcome *outcome);
 
-/* The same with the SHA-256 of these files, for a server that has them, and the study (NULL: it names none); and such a file. */
+/* The same with the SHA-256 of these files, for a server that stores them, and the study (NULL: it names no file); and reads such a
+ * file. */
 char *document_hashed(const char *path, size_t *length, enum outcome *outcome, struct pound_study **study);
 char *document_file(const char *path, const struct study_source *of, size_t *length);
 
-/* The study of a document that was read from a path, with the files that it names, also of a model that is run elsewhere; NULL:
- * with the outcome, said on stderr why. */
+/* The study of a document that was read from a path, with the files that it names; also of an external model; NULL: with the
+ * outcome, reported on stderr. */
 struct pound_study *document_study(const char *path, const char *text, size_t length, enum outcome *outcome);
 
-/* Says what a problem body (RFC 9457) says, every error on its own line, `subject` in front. */
+/* Prints a problem body (RFC 9457) on stderr, one error per line, each after `subject`. */
 void document_complain(const char *subject, const struct reading *problem);
 
-/* The same for a file or standard input that was read here; the outcome that is left. */
+/* The same for a file or standard input that was read here; returns the outcome. */
 enum outcome document_reject(const char *path, const struct problems *problems);
 
-/* Says what there is to say about a study's design. */
+/* Prints warnings about a study's design. */
 struct pound_study;
 void document_advise(const struct pound_study *study);
 
-/* Says what a document is for that is no study but the design of one. */
+/* Prints the subcommands for a document that is a recorded ground motion or the study of an external model. */
 void document_hint(const char *text, size_t length);
 
 #endif

@@ -1,7 +1,7 @@
-/* evaluate.c - `pound evaluate`: a study's design run on a model that a server of the UM-Bridge protocol 1.0 has.
+/* evaluate.c - `pound evaluate`: runs a study's design on a model of a server that speaks the UM-Bridge protocol 1.0.
  *
  * 1. The model's sizes must fit the study.
- * 2. Each sample, or replicate of one, is a run: taken from the journal, or asked of the server, several at a time.
+ * 2. Each sample, or replicate of one, is a run: taken from the journal, or requested from the server, several at a time.
  * 3. Outputs are placed by the number of their run, so the order of the answers does not matter; they become the CSV that
  *    `pound indices` reads.
  *
@@ -80,7 +80,7 @@ static double now(void)
 
 /* ---- the model ---- */
 
-/* What an answer says is wrong: its type and message, or its status. */
+/* The error in an answer: its type and message, or its status. */
 static void complain_of(const struct evaluation *e, const struct wire_reply *reply)
 {
 	struct reading *r = reading_open(reply->body, reply->n_body);
@@ -188,7 +188,7 @@ static enum outcome read_sizes(const struct evaluation *e, const char *path, con
 	return outcome;
 }
 
-/* Takes the configuration, which must be an object, and makes a place for the seed in it. */
+/* Reads the configuration, which must be a JSON object, and prepares its member for the seed. */
 static enum outcome take_config(struct evaluation *e)
 {
 	const char *text = e->options->evaluate.config ? e->options->evaluate.config : "{}",
@@ -323,7 +323,7 @@ static bool outputs_read(struct evaluation *e, const struct wire_reply *reply, d
 	return fits;
 }
 
-/* Whether an answer is that of a run, and not of a server on the way or of one that knows no such model. */
+/* Whether an answer is the result of a run, not an answer of a proxy or of a server without this model. */
 static bool is_of_run(const struct wire_reply *reply)
 {
 	if (reply->status != HTTP_BAD_REQUEST)
@@ -371,7 +371,7 @@ static enum outcome job_end(struct evaluation *e, struct job *job, enum outcome 
 	return outcome;
 }
 
-/* Gives every job that has none a run, and sends what is due. */
+/* Assigns a run to every idle job, and sends the requests that are due. */
 static void jobs_begin(struct evaluation *e, struct wire_jobs *wires, struct job *jobs, long *next)
 {
 	const double time = now();

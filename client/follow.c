@@ -1,4 +1,4 @@
-/* follow.c - asks for the status more and more rarely, and survives a server that is restarted meanwhile. */
+/* follow.c - polls the status at growing intervals, and survives a restart of the server. */
 #include "client/follow.h"
 
 #include "client/answer.h"

@@ -9,7 +9,7 @@
  *     twice the rows leave 0.71 of it, 4000 rows half of it
  *     300 runs checked, differences 1e-14 (median) to 2e-13: no index moves by over 3e-15
  *
- * and then a table for each other list of estimates, which have the names there that they have in the JSON. */
+ * and then a table for each other list of estimates, with their names in the JSON. */
 #include "client/indices_table.h"
 
 #include "client/cell.h"
@@ -342,7 +342,7 @@ static void print_curves(const struct reading *result, const char *output)
 // clang-format off
 /* What there is of an output, in the order in which it is printed. */
 static const struct {
-	const char *name; /* of its member in the JSON; those of RESULT_TABLES can be asked for */
+	const char *name; /* of its member in the JSON; names in RESULT_TABLES can be requested */
 	void (*print)(const struct reading *result, const char *output);
 } SECTIONS[] = {
 	{"inputs",            print_inputs},

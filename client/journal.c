@@ -1,4 +1,4 @@
-/* journal.c - lines `run,value,...` behind a first line that says what they are of. */
+/* journal.c - lines `run,value,...` after a first line that identifies the evaluation. */
 #include "client/journal.h"
 
 #include "schema/json/json_writer.h"

@@ -1,4 +1,4 @@
-/* external_model.c - a model that is run elsewhere: `pound design` prints where, `pound indices` reads what came out. */
+/* model.c - external models: `pound design` prints the samples to run, `pound indices` reads the outputs. */
 #include "client/model.h"
 #include "client/command.h"
 #include "client/document.h"

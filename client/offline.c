@@ -1,4 +1,4 @@
-/* offline.c - in place of wire.c in a build without libcurl (make client CURL=0): no server can be asked. */
+/* offline.c - in place of wire.c in a build without libcurl (make client CURL=0): every request fails. */
 #include "client/wire.h"
 
 #include <assert.h>

@@ -2,11 +2,11 @@
 #ifndef PROGRESS_BAR_H
 #define PROGRESS_BAR_H
 
-/* Draws the bar: runs done of the runs asked (total 0: not known yet), and seconds left (< 0: not known).  Whatever the
- * numbers are that a server has sent: it is not drawn beyond its ends. */
+/* Draws the bar: runs done of all runs (total 0: not known yet), and seconds left (< 0: not known).  Numbers from a server
+ * are not trusted: the bar never exceeds its ends. */
 void bar_draw(double done, double total, double left_s);
 
-/* Takes the bar off its line. */
+/* Erases the bar. */
 void bar_clear(void);
 
 #endif

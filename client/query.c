@@ -1,6 +1,6 @@
-/* query.c - what there is on the server: statuses, results, samples; and their end.
+/* query.c - status, results and samples of studies on the server; cancelling and deleting studies.
  *
- * JSON and CSV that the server makes are passed on as they are. */
+ * JSON and CSV from the server are printed unchanged. */
 #include "client/answer.h"
 #include "client/follow.h"
 #include "client/show.h"

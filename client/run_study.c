@@ -1,4 +1,4 @@
-/* run_study.c - a study computed without a server: from its document to its result. */
+/* run_study.c - runs a study without a server: from its document to its result. */
 #include "client/command.h"
 #include "client/compute.h"
 #include "client/document.h"

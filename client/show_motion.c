@@ -1,4 +1,4 @@
-/* show_motion.c - `pound motion`: the ground motions of a study, to be used elsewhere. */
+/* show_motion.c - `pound motion`: the ground motions of a study, for use in other programs. */
 #include "client/command.h"
 #include "client/document.h"
 #include "schema/result/motion_spectrum.h"

@@ -1,4 +1,4 @@
-/* submit.c - a study document to the server; its id comes back at once, its end when asked for. */
+/* submit.c - sends a study document to the server; prints its id at once, and waits for its end if requested. */
 #include "client/answer.h"
 #include "client/document.h"
 #include "client/follow.h"

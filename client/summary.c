@@ -1,4 +1,4 @@
-/* summary.c - a sensitivity result on one screen.  Where each index fits with its interval and a bar, those:
+/* summary.c - a sensitivity result on one screen.  If each index fits with its interval and a bar:
  *
  *   impulse: mean 0.8992, noise 3.8 %
  *     f_2      S1  0.243 +-0.049  ST  0.626 +-0.092  |#############       |

@@ -4,7 +4,7 @@
 
 #include "schema/json/json_pointer.h"
 
-/* The indices to quote, how far they may be off and why, and where the rest is. */
+/* The indices to quote, their uncertainty and its causes, and how to see the other results. */
 void summary_print(const struct reading *result);
 
 #endif

@@ -8,9 +8,9 @@ struct table;
 
 enum { TABLE_WIDTH = 80 }; /* columns that tables and sentences keep within */
 
-/* `names` are the column heads, ending with NULL; they are copied.  The first n_keys say what a row is about: where a table is
- * wider than TABLE_WIDTH its other columns follow below each other, with these before them.  No function fails: no memory ends
- * the program. */
+/* `names` are the column heads, ending with NULL; they are copied.  The first n_keys columns identify a row: a table wider
+ * than TABLE_WIDTH is printed as several tables below each other, each with these columns first.  No function fails: out of
+ * memory ends the program. */
 struct table *table_open(int n_keys, const char *const names[]);
 void table_text(struct table *table,
                 const char *text);                    /* next cell, rows fill from the left; NULL: no value */
@@ -28,10 +28,10 @@ int table_width(const char *text);
 /* A text of at most `width` columns, for the caller to free; "..." is where it is cut. */
 char *table_cut(const char *text, int width);
 
-/* Prints a text that came from elsewhere, tamed; NULL: nothing. */
+/* Prints an untrusted text after command_tame; NULL: nothing. */
 void table_say(const char *text);
-/* Prints one in lines of at most TABLE_WIDTH columns, all `indent` blanks in. */
+/* Prints such a text in lines of at most TABLE_WIDTH columns, all indented by `indent` blanks. */
 void table_prose(int indent, const char *text);
-int table_prose_lines(int indent, const char *text); /* how many that are */
+int table_prose_lines(int indent, const char *text); /* their number */
 
 #endif

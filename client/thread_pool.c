@@ -1,6 +1,6 @@
 /* The threads take orders from a queue: to make the run of a study and answer with the digest of its design, or to run a
- * block.  Who receives messages never sends, so that a coordinator which sends much cannot wait for itself.  A study that was
- * dropped is stopped, its orders are answered as such, and the last who is at it frees it. */
+ * block.  The thread that receives messages never sends, so that it and a sending coordinator cannot block each other.  A dropped
+ * study is stopped, its orders are answered as stopped, and the last thread that uses it frees it. */
 #include "client/thread_pool.h"
 
 #include <assert.h>
@@ -166,7 +166,7 @@ static bool put(struct thread_pool *pool, struct work_study *s, int block)
 	return true;
 }
 
-/* What a message means for the study it names (NULL: there is none). */
+/* Executes a message for the study it names (NULL: no such study). */
 static bool obey(struct thread_pool *pool, const struct message *m, struct work_study *s, char **body)
 {
 	switch ((enum message_type)m->type) {

@@ -8,16 +8,16 @@
 
 struct thread_pool;
 
-/* Takes an answer, DESIGN or VALUES, whose body lives until it returns; in any thread, one at a time. */
+/* Receives an answer, DESIGN or VALUES; its body is valid during the call; in any thread, one at a time. */
 typedef void worker_answer(void *to, const struct message *message, const void *body);
 
 struct thread_pool *thread_pool_start(int n_threads, worker_answer *answer,
                                       void *to); /* NULL: no memory or threads */
-/* Does what a message of the coordinator says; takes the body, which is on the heap.  false: it makes no sense. */
+/* Executes a message of the coordinator; takes over the body, which is on the heap.  false: the message is invalid. */
 bool thread_pool_take(struct thread_pool *pool, const struct message *message, char *body);
 /* Doubles of the largest block of a study whose design was answered. */
 size_t thread_pool_values_most(struct thread_pool *pool, uint64_t study);
 void thread_pool_stop(struct thread_pool *pool); /* outstanding blocks return POUND_STOPPED */
-bool thread_pool_idle(struct thread_pool *pool); /* after that: all of them were answered */
+bool thread_pool_idle(struct thread_pool *pool); /* after that: all blocks were answered */
 
 #endif

@@ -1,6 +1,6 @@
 /* wire.h - one HTTP exchange with the server: request in; status, headers and body out.
  *
- * The only header that knows libcurl is behind it.  One `struct wire` is used by one thread. */
+ * Only wire.c includes libcurl.  One `struct wire` is used by one thread. */
 #ifndef WIRE_H
 #define WIRE_H
 
@@ -22,7 +22,7 @@ struct wire_request {
 
 struct wire_reply {
 	long status; /* HTTP status */
-	char *body;  /* (n_body), and a NUL behind it that is not counted */
+	char *body;  /* (n_body), plus a NUL that is not counted */
 	size_t n_body;
 	char *type;         /* media type of the body without its parameters; "": none */
 	long retry_after_s; /* 0: unknown */
@@ -32,7 +32,7 @@ struct wire_reply {
 struct wire *wire_open(const char *url);
 void wire_close(struct wire *wire);
 
-/* OUTCOME_OK when the server answered, whatever the answer; otherwise wire_failure has the reason. */
+/* OUTCOME_OK when the server answered, with any status; otherwise wire_failure has the reason. */
 enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply);
 const char *wire_url(const struct wire *wire);
 const char *wire_failure(const struct wire *wire);
@@ -48,10 +48,10 @@ struct wire_jobs;
 struct wire_jobs *wire_jobs_open(const char *url, int n, int timeout_s);
 void wire_jobs_close(struct wire_jobs *jobs);
 
-/* Begins a request by a job that has none; its texts must last until its reply is there. */
+/* Begins a request by an idle job; its texts must stay valid until its reply has arrived. */
 void wire_jobs_send(struct wire_jobs *jobs, int job, const struct wire_request *request);
 
-/* The job whose reply has come, or that got none, as wire_send says; -1: none has within so many milliseconds. */
+/* A job whose request has ended, with or without a reply, as in wire_send; -1: no job within wait_ms. */
 int wire_jobs_receive(struct wire_jobs *jobs, int wait_ms, enum outcome *outcome, struct wire_reply *reply);
 const char *wire_jobs_failure(const struct wire_jobs *jobs, int job);
 

@@ -1,4 +1,4 @@
-/* pound-worker: one process that runs blocks for a coordinator until its connection ends, and with --connect another for the next one. */
+/* pound-worker: one process that runs blocks for a coordinator until its connection ends; with --connect another process serves the next connection. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>

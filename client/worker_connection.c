@@ -55,7 +55,7 @@ static char *cut(char *text)
 	return colon;
 }
 
-/* Splits HOST:PORT, of which the host may stand in brackets; false: it is something else. */
+/* Splits HOST:PORT, where the host may be in brackets; false: not of this form. */
 static bool split(struct place *place)
 {
 	char *port = cut(place->text), *host = place->text;
@@ -93,7 +93,7 @@ static void place_of_launcher(struct place *place)
 	strcpy(place->token, token);
 }
 
-/* A connection to one of the addresses of a host, -1: none, and why. */
+/* A connection to one of the addresses of a host; -1: failed, with the reason. */
 static int connect_to(const struct place *place, const char **why)
 {
 	const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM};
@@ -116,7 +116,7 @@ static int connect_to(const struct place *place, const char **why)
 	return s;
 }
 
-/* Says the token and greets; NULL, or what failed. */
+/* Sends the token and the greeting; NULL, or what failed. */
 static const char *greet(int s, const struct place *place, int n_threads)
 {
 	const struct message ready = {
@@ -267,7 +267,7 @@ struct worker_options worker_options(int argc, char **argv)
 	                                        "by --worker-listen.\vA launcher sets POUND_WORKER, which says "
 	                                        "where to connect: HOST:PORT:TOKEN."};
 	struct worker_options options = {.n_threads = cores()};
-	argp_err_exit_status = 2; // as that of pound
+	argp_err_exit_status = 2; // as in pound
 	argp_parse(&argp, argc, argv, 0, NULL, &options);
 	return options;
 }

@@ -2,12 +2,12 @@
  *
  *   coordinator <-- connection --> rank 0 <-- MPI --> rank 1, 2, 3 ...
  *
- * 1. Rank 0 passes a study, and its end, on to all ranks, and a block to the rank with the fewest blocks a thread; it computes, too.
- * 2. It answers with the digest of the design when all ranks have theirs, and with zeros where two differ.
- * 3. Messages are those of the connection, head and body in one; their tag is that of their study.  Rank 0 posts the receive of an
- *    answer when it sends the question, so that no answer waits for being looked for.
- * 4. Only the main thread calls MPI.  It sleeps when there is nothing to do, as MPI waits by spinning; the threads that compute, and
- *    the one that reads the connection, leave packets in a mailbox.
+ * 1. Rank 0 sends a study, and its end, to all ranks, and a block to the rank with the fewest blocks per thread; it computes, too.
+ * 2. It answers with the digest of the design when all ranks have computed theirs, and with zeros if two differ.
+ * 3. The MPI messages equal the messages of the connection, head and body in one; their tag is the tag of the study.  Rank 0 posts
+ *    the receive of an answer when it sends the request, so that answers need no probing.
+ * 4. Only the main thread calls MPI.  It sleeps when there is nothing to do, because MPI's waits spin; the computing threads and the
+ *    thread that reads the connection leave packets in a mailbox.
  * 5. When the connection ends, all ranks stop their blocks, rank 0 receives what is outstanding, and all end together. */
 #include <mpi.h>
 #include <pthread.h>
@@ -27,7 +27,7 @@ enum {
 	TAGS = 30000,     /* MPI has 32,767 at least */
 	STUDIES_MAX = 64, /* that have no end yet; a coordinator has fewer */
 	IDLE_US = 100,
-	END_MAX = 10, /* [s] from the end of the connection to that of the program */
+	END_MAX = 10, /* [s] from the end of the connection to the exit of the program */
 };
 
 /* A message on its way. */

@@ -1,10 +1,10 @@
-/* answer_cache.c - small answers; the one used longest ago makes room.  Making an answer takes 2 to 100 times as long as sending it. */
+/* answer_cache.c - small answers; the least recently used one is replaced.  Making an answer takes 2 to 100 times as long as sending it. */
 #include "server/answer_cache.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* The slot of a question, else the one that was used longest ago. */
+/* The slot of a question, else the least recently used slot. */
 static struct cached_answer *slot_of(struct answer_cache *cache, const char *question)
 {
 	struct cached_answer *oldest = &cache->slot[0];
@@ -29,10 +29,10 @@ static struct reply copied(const struct reply *reply)
 
 /* Finds the answer to a question.
  *
- * Given    question   all that the answer depends on, besides what is stored; "": an answer that is not cached
- *          changes    store_changes() of what it is about
+ * Given    question   all that the answer depends on, besides the store; "": answers that are not cached
+ *          changes    store_changes() of the study, or of all studies
  * Returns  reply      with a body of its own
- *          value      false: there is none
+ *          value      false: it is not cached
  * Test     service_routes: an_answer_is_kept_until_what_it_is_about_changes
  */
 bool answer_cache_take(struct answer_cache *cache, const char *question, unsigned changes,
@@ -51,7 +51,7 @@ bool answer_cache_take(struct answer_cache *cache, const char *question, unsigne
 	return found;
 }
 
-/* Stores a copy of an answer, in place of the one that was used longest ago. */
+/* Stores a copy of an answer, in place of the least recently used one. */
 void answer_cache_give(struct answer_cache *cache, const char *question, unsigned changes,
                        const struct reply *reply)
 {

@@ -17,8 +17,8 @@ enum {
 struct cached_answer {
 	char question[ANSWER_CACHE_QUESTION_SIZE];
 	unsigned changes;   /* store_changes() from before the answer was made */
-	struct reply reply; /* body NULL: none */
-	uint64_t used;      /* struct answer_cache's uses when it was last given or taken; 0: never */
+	struct reply reply; /* body NULL: the slot is empty */
+	uint64_t used;      /* answer_cache.uses at its last use; 0: never used */
 };
 
 struct answer_cache {
@@ -27,7 +27,7 @@ struct answer_cache {
 	struct cached_answer slot[ANSWER_CACHE_SLOTS];
 };
 
-/* Whether the answer to this question is there, made after `changes` changes; its body is a copy for the caller. */
+/* Whether an answer to this question made at this value of store_changes() is cached; its body is a copy, which the caller frees. */
 bool answer_cache_take(struct answer_cache *cache, const char *question, unsigned changes,
                        struct reply *reply);
 void answer_cache_give(struct answer_cache *cache, const char *question, unsigned changes,

@@ -1,4 +1,4 @@
-/* Copies of a database, and a copy in its place. */
+/* Backup and restoration of a database. */
 #include "server/backup.h"
 
 #include <limits.h>
@@ -9,7 +9,7 @@
 #include "server/disk.h"
 #include "server/log.h"
 
-/* Copies a database; a server may use it meanwhile.
+/* Copies a database, which a server may use at the same time.
  *
  * Given    path    of the database
  *          to      of the copy, which must not exist
@@ -23,9 +23,9 @@ bool backup_make(const char *path, const char *to)
 	return copied;
 }
 
-/* Puts a copy in the place of a database that no server uses; the former is kept as PATH-replaced, with its WAL.
+/* Replaces a database that no server uses by a copy of another; the old one is kept as PATH-replaced, with its WAL.
  *
- * Given    from    a database of poundd, as --backup makes it, which stays as it is
+ * Given    from    a database of poundd, such as --backup makes; it is not changed
  * Returns  value   false: nothing has changed, or only PATH-replaced is there; logged
  * Test     service_backup: a_copy_is_restored_in_the_place_of_a_database_and_its_wal
  */
@@ -37,7 +37,7 @@ bool backup_restore(const char *path, const char *from)
 	bool ok = disk_take(&disk, path);
 	snprintf(made, sizeof made, "%s-restored", disk.database);
 	if (ok)
-		unlink(made); // of a restoration that did not come to its end
+		unlink(made); // left by an interrupted restoration
 	ok = ok && database_open(&reading, from, false, NULL, 0) && database_ours(&reading, from) &&
 	     database_checked(&reading) && database_copy(&reading, made) && disk_replace(&disk, made);
 	if (ok)

@@ -10,7 +10,7 @@
 
 enum { CALL_MAX = 60 /* [s of one core], estimated: only two are computed at a time */ };
 
-/* Looks the model up among the stored studies; false: it cannot be known now, and why is replied. */
+/* Looks the model up among the stored studies; false: the store failed, and the reply says why. */
 static bool look_up(struct request *request, struct um_bridge *bridge, struct reply *reply)
 {
 	char *document = NULL;
@@ -27,7 +27,7 @@ static bool look_up(struct request *request, struct um_bridge *bridge, struct re
 	return found == STORE_OK || found == STORE_NONE;
 }
 
-/* Whether a study can be run while a client waits; if not, that is the answer. */
+/* Whether a study can be run while a client waits; if not, the answer is a refusal. */
 static bool allowed(const struct request *request, struct um_bridge *bridge, const struct pound_study *study)
 {
 	const int most = request->server->options->cpu_max;
@@ -44,7 +44,7 @@ static bool allowed(const struct request *request, struct um_bridge *bridge, con
 	return cpu_s <= limit;
 }
 
-/* Runs a study; POUND_STOPPED: nobody waits for it any more. */
+/* Runs a study; POUND_STOPPED: the client no longer waits for it. */
 static enum pound_status run(const struct request *request, struct um_bridge *bridge,
                              const struct pound_study *study)
 {

@@ -1,4 +1,4 @@
-/* libmicrohttpd, started on a socket and stopped: a few threads, each with its connections.  server/http.c has what it calls. */
+/* libmicrohttpd, started on a socket and stopped: a few threads, each with its connections.  Its callbacks are in server/http.c. */
 #include "server/daemon.h"
 
 #include <errno.h>
@@ -16,20 +16,20 @@
 
 enum {
 	THREADS = 4,
-	TURNS = 2,               /* of them that take long, at a time */
-	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: beyond it clients hang unanswered */
-	CONNECTIONS_MIN = 8,     /* of which each thread has a share */
-	DRAINING_MAX = 256,      /* clients who go on sending after their answer */
-	PROBES = 64,             /* connections that are answered probes, when no more are served */
+	TURNS = 2,               /* slow answers made at a time */
+	CONNECTIONS_MAX = 4096,  /* of libmicrohttpd: further clients would hang unanswered */
+	CONNECTIONS_MIN = 8,     /* at least; they are divided among the threads */
+	DRAINING_MAX = 256,      /* clients that still send after their answer */
+	PROBES = 64,             /* connections beyond the limit that get answers to probes */
 	SPOOLED_MAX = 256,       /* answers in files */
-	FILES_BESIDE = 48,       /* descriptors that are no connections: 33, and what is open for a moment */
+	FILES_BESIDE = 48,       /* descriptors other than connections: 33, and short-lived ones */
 	OF_ADDRESS_MAX = 64,     /* connections of one address, unless it is loopback */
-	POOL = 32 * 1024,        /* [bytes] of a connection: twice HEAD_BYTES_MAX, for what is made of a head */
+	POOL = 32 * 1024,        /* [bytes] of a connection: twice HEAD_BYTES_MAX, for the parsed head */
 	STOP_S = 5,              /* [s] for requests under way when the server stops */
 	STOP_TICK_NS = 10000000, /* [ns] */
 };
 
-static const double STOP_ASIDE_S = 0.3; /* [s] for answers that are abandoned */
+static const double STOP_ASIDE_S = 0.3; /* [s] for abandoned answers to end */
 
 static void notice(void *of, struct MHD_Connection *connection, void **context,
                    enum MHD_ConnectionNotificationCode code)
@@ -51,7 +51,7 @@ static enum MHD_Result welcome(void *of, const struct sockaddr *address, socklen
 	return server->stopping ? MHD_NO : MHD_YES;
 }
 
-/* Called by libmicrohttpd for what it has to say, which may be a hundred thousand times a second: reported once a second. */
+/* Called by libmicrohttpd for its messages, perhaps a hundred thousand times per second: at most one per second is logged. */
 static void log_library(void *of, const char *format, va_list values)
 {
 	struct server *server = of;
@@ -68,18 +68,17 @@ static void log_library(void *of, const char *format, va_list values)
 	         atomic_exchange(&server->library_unreported, 0));
 }
 
-/* Shares out the descriptors there may be, as many as are needed or allowed: a connection without one would keep a thread
- * that accepts it busy.
+/* Divides the descriptors that this process may open, after raising their limit as needed: when accept(2) finds no free
+ * descriptor, the accepting thread spins.
  *
- * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; of them all but a few are served, and the
- *                  others get 503
+ * Returns  value   connections that libmicrohttpd may have, 0: too few, logged; nearly all are served, the others get 503
  */
 static int share_files(struct server *server, int wanted)
 {
 	struct connections *connections = &server->connections;
 	struct rlimit files = {RLIM_INFINITY, RLIM_INFINITY};
 	const struct launch *launch = &server->options->launch;
-	// a worker group has a socket that listens, its connection and what wakes its thread
+	// a worker group has a listening socket, its connection and an eventfd that wakes its thread
 	const int beside = FILES_BESIDE + 3 * MAX(launch->n, launch->command != NULL) +
 	                   (launch->at ? 2 * COORDINATOR_GROUPS_MAX : 0);
 	const rlim_t most = CONNECTIONS_MAX + DRAINING_MAX + SPOOLED_MAX + (rlim_t)beside;
@@ -161,11 +160,11 @@ int daemon_port(const struct server *server)
 	return MHD_get_daemon_info(server->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
 }
 
-/* Stops answering.  Clients that wait for a study get 503; requests under way have a few seconds to end, and answers that
- * take long, which are abandoned, less.
+/* Stops answering.  Clients that wait for a study get 503; requests under way have a few seconds to end, slow answers,
+ * which are abandoned, less.
  *
- * Returns  value   false: one of these was not given up in time, and nothing that it may use may be given up but by the end
- *                  of the program
+ * Returns  value   false: a slow answer did not end in time, so memory that it may use must not be freed before the program
+ *                  exits
  */
 bool daemon_stop(struct server *server)
 {
@@ -175,7 +174,7 @@ bool daemon_stop(struct server *server)
 	while ((server->aside > 0 && connection_now() < aside_until) ||
 	       (server->under_way > server->aside && connection_now() < until))
 		nanosleep(&(struct timespec){.tv_nsec = STOP_TICK_NS}, NULL);
-	// a suspended connection must not be stopped
+	// libmicrohttpd must not be stopped with suspended connections
 	if (server->aside > 0)
 		return false;
 	MHD_stop_daemon(server->daemon);

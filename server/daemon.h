@@ -6,7 +6,7 @@
 
 bool daemon_start(struct server *server); /* false: logged */
 int daemon_port(const struct server *server);
-/* what is under way is answered, who waits gets 503; false: an answer was not given up in time */
+/* answers requests under way, sends 503 to waiting clients; false: a slow answer was not abandoned in time */
 bool daemon_stop(struct server *server);
 
 #endif

@@ -1,4 +1,4 @@
-/* One SQLite connection: its settings, its statements, and the version of what it finds. */
+/* One SQLite connection: its settings, its prepared statements, and the version of the database. */
 #include "server/database.h"
 
 #include <errno.h>
@@ -27,7 +27,7 @@ enum {
 	RESET_SAFE = 3051003, /* the version of SQLite from which two connections may change a WAL database */
 };
 
-/* What makes a database of version n one of version n + 1. */
+/* Statements that migrate a database from version n to version n + 1. */
 static const char *const steps[USER_VERSION] = {
     [1] = "ALTER TABLE study ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0;"
           "ALTER TABLE block ADD COLUMN wall_s REAL NOT NULL DEFAULT 0;"
@@ -43,7 +43,7 @@ static const char *const steps[USER_VERSION] = {
           "UPDATE study SET (runs_done, cpu_s, attempt_kept) = "
           "(SELECT coalesce(sum(runs), 0), total(cpu_s), coalesce(max(attempt), 0) FROM block WHERE study = "
           "id)",
-    // before version 3 a key stood alone; one that came a second time since then has gone to the second study
+    // keys have a client prefix since version 3; a key that was submitted again since then belongs to the second study
     [4] = "UPDATE OR IGNORE study SET idempotency_key = ' ' || idempotency_key "
           "WHERE client IS NULL AND idempotency_key NOT GLOB ' *'",
     [5] = "ALTER TABLE study ADD COLUMN cpu_s_estimated REAL NOT NULL DEFAULT 0;"
@@ -63,7 +63,7 @@ static bool done(const struct database *d, const char *sql)
 	return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK;
 }
 
-/* The first value of a query's first row, as text; "": none. */
+/* The first value of a query's first row, as text; "": no row. */
 static const char *answer(const struct database *d, const char *sql, char text[32])
 {
 	sqlite3_stmt *read = NULL;
@@ -75,7 +75,7 @@ static const char *answer(const struct database *d, const char *sql, char text[3
 	return text;
 }
 
-/* Makes a setting, and reads it back. */
+/* Sets a PRAGMA, and reads it back. */
 static bool set(const struct database *d, const char *name, const char *value)
 {
 	char make[64], ask[64], text[32];
@@ -87,7 +87,7 @@ static bool set(const struct database *d, const char *name, const char *value)
 	return holds;
 }
 
-/* The SQL function digest(place, bytes): SHA-256 of where bytes belong, and of themselves. */
+/* The SQL function digest(place, bytes): SHA-256 of the place where the bytes belong, followed by the bytes. */
 static void digest(sqlite3_context *call, int n, sqlite3_value **values)
 {
 	struct sha256_ctx hash;
@@ -121,7 +121,8 @@ static bool configured(const struct database *d, bool writes)
 {
 	static const struct {
 		const char *name, *value;
-		bool in_file; // and is changed by one who writes; a copy that was never opened has it otherwise
+		bool
+		    in_file; // stored in the file: only the writer sets it; a backup that was never opened has another value
 	} settings[] = {
 	    {"busy_timeout", "5000", false},
 	    {"journal_mode", "wal", true},
@@ -140,7 +141,7 @@ static bool configured(const struct database *d, bool writes)
 	return true;
 }
 
-/* Whether the pages hold together: where a server was killed, or a file copied by other means than --backup.
+/* Whether the database passes SQLite's quick_check: for a server that was killed, or a file not copied by --backup.
  *
  * Test     service_backup: a_wal_is_not_applied_to_another_database
  */
@@ -159,7 +160,7 @@ void database_limit_wal(const struct database *d, int64_t bytes)
 	sqlite3_wal_autocheckpoint(d->db, (int)(bytes / PAGE));
 }
 
-/* Gives the disk what a WAL takes that was written back; who reads it now is not waited for. */
+/* Checkpoints and truncates the WAL, to free its disk space, without waiting for readers. */
 void database_truncate(const struct database *d)
 {
 	sqlite3_busy_timeout(d->db, 0);
@@ -167,16 +168,16 @@ void database_truncate(const struct database *d)
 	sqlite3_busy_timeout(d->db, BUSY_MS);
 }
 
-/* Writes a copy of the database as it is now, while others go on; it is on the disk when this returns.
+/* Writes a copy of the present state of the database, which others may use; it is on the disk when this returns.
  *
  * Given    path    of the copy, which must not exist
- * Returns  value   false: logged, and what was written of it is removed
+ * Returns  value   false: logged, and the incomplete copy is removed
  * Test     service_backup: a_copy_made_while_studies_run_is_a_whole_database
  *          service_faults: a_copy_that_fails_says_why_and_is_not_left
  */
 bool database_copy(const struct database *d, const char *path)
 {
-	// an empty file of our own, which SQLite may write to: so it is never another's that is removed
+	// creating the empty file ourselves, which SQLite accepts, ensures that no other file is removed after a failure
 	int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
 	if (file < 0) {
 		log_line("cannot make %s: %s", path, strerror(errno));
@@ -198,7 +199,7 @@ bool database_copy(const struct database *d, const char *path)
 	return synced;
 }
 
-/* One transaction that ends with the database being of a version. */
+/* Runs statements and sets the version of the database in one transaction. */
 static bool versioned(const struct database *d, const char *sql, int version)
 {
 	char end[64];
@@ -209,12 +210,12 @@ static bool versioned(const struct database *d, const char *sql, int version)
 	return made;
 }
 
-/* Keeps PATH-vN of a database of version n, and brings it to ours. */
+/* Keeps a copy of a database of version n as PATH-vN, and migrates the database to this version. */
 static bool migrated(const struct database *d, const char *path, int version)
 {
 	char copy[PATH_MAX];
 	snprintf(copy, sizeof copy, "%s-v%d", path, version);
-	// of a migration that did not come to its end
+	// left by an interrupted migration
 	unlink(copy);
 	bool ok = database_copy(d, copy);
 	for (; ok && version < USER_VERSION; version++)
@@ -224,7 +225,7 @@ static bool migrated(const struct database *d, const char *path, int version)
 	return ok;
 }
 
-/* The version of a database, 0: there is nothing in it yet, -1: it cannot be read, is not ours, or of a newer version. */
+/* The version of a database, 0: empty, -1: it cannot be read, is not of poundd, or of a newer version. */
 static int version_of(const struct database *d, const char *path)
 {
 	char text[32];
@@ -248,7 +249,7 @@ bool database_ours(const struct database *d, const char *path)
 	return version_of(d, path) > 0;
 }
 
-/* Makes a new database, or brings one of ours to this version. */
+/* Creates the tables of a new database, or migrates an older one to this version. */
 static bool founded(const struct database *d, const char *path, int version)
 {
 	return version == 0 ? versioned(d, schema_text, USER_VERSION) && disk_sync(path)
@@ -269,10 +270,10 @@ static bool prepared(struct database *d, const char *const statements[], int n)
 /* Opens a connection.
  *
  * Given    path         of the database file
- *          writes       whether it may change the database, and makes or migrates it first; else it never checkpoints
+ *          writes       whether it may change the database, creating or migrating it first; else it never checkpoints
  *          statements   (n)   to prepare
  * Returns  database     for database_close, whatever the value
- *          value        false: not to be opened, not ours, or of a newer version; logged
+ *          value        false: it cannot be opened, is not of poundd, or of a newer version; logged
  * Test     service_faults: a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_new
  *          unit_store: keys_of_every_version_stand_for_their_studies
  */
@@ -283,7 +284,7 @@ bool database_open(struct database *d, const char *path, bool writes, const char
 		         sqlite3_libversion());
 	if (!connected(d, path, writes))
 		return false;
-	// a setting stays in the file, so that another's is looked at before
+	// journal_mode is stored in the file: check first that the database is of poundd
 	int version = writes ? version_of(d, path) : USER_VERSION;
 	return version >= 0 && configured(d, writes) && founded(d, path, version) && prepared(d, statements, n);
 }

@@ -1,8 +1,8 @@
 /* Connections and their deadlines.
  *
- * libmicrohttpd's own timeout starts again with every byte, which lets a client that sends one now and then stay for
- * ever; these deadlines are absolute.  Who is late has his socket shut down, which libmicrohttpd sees as the end.  A
- * connection is taken off the list before its descriptor is closed, so that none is shut down that is another's. */
+ * libmicrohttpd's own timeout restarts with every byte, so a client that sends one now and then could stay forever;
+ * these deadlines are absolute.  The socket of a late connection is shut down, which libmicrohttpd sees as its end.  A
+ * connection leaves the list before its descriptor is closed: a reused descriptor is never shut down by mistake. */
 #include "server/deadlines.h"
 
 #include <errno.h>
@@ -19,9 +19,9 @@
 
 enum {
 	TICK_NS = 50000000,    /* [ns] */
-	LINGER_S = 5,          /* [s] a client may go on sending */
-	TICK_BYTES = 16 << 20, /* read of all of them in a tick, while the list is locked */
-	GONE_EVERY = 8,        /* ticks after which one that waits is asked whether it is still there */
+	LINGER_S = 5,          /* [s] a client may still send after its answer */
+	TICK_BYTES = 16 << 20, /* read per tick from all draining connections, while the list is locked */
+	GONE_EVERY = 8,        /* ticks between checks whether a waiting client is still connected */
 };
 
 double connection_now(void)
@@ -31,7 +31,7 @@ double connection_now(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Reads what has come, and no more than is left for this tick; false: nothing more will. */
+/* Reads and discards what has arrived, at most what is left for this tick; false: the client has closed. */
 static bool drain(const struct connection *connection, ssize_t *left)
 {
 	static _Thread_local char bytes[65536];
@@ -43,8 +43,8 @@ static bool drain(const struct connection *connection, ssize_t *left)
 	return n > 0 || (n < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
-/* Whether a client has gone, for a tick at least, so that who is answered at once is.  One who only says that he sends no more
- * is taken for one: a closed socket looks like that. */
+/* Whether a client has disconnected, seen at two checks, so that an answer made at once is still sent.  A client that only
+ * shuts down its sending side counts as disconnected: a closed socket looks the same. */
 static bool gone(struct connection *connection)
 {
 	struct pollfd end = {.fd = connection->fd, .events = POLLRDHUP};
@@ -68,7 +68,7 @@ static void look(struct connections *all, struct connection *connection, double 
 		if (now < connection->until && !all->released && !connection->unwanted &&
 		    connection->changes == store_changes(all->store, connection->id))
 			return;
-		// before it goes on, for it may wait again at once
+		// before the request resumes, for it may wait again at once
 		all->n_waiting--;
 		all->resume(atomic_exchange(&connection->handle, NULL));
 	} else if (connection->answering) {
@@ -100,9 +100,9 @@ static void *watch(void *of)
 	return NULL;
 }
 
-/* Starts to watch over connections.
+/* Starts the watch thread.
  *
- * Given    all      its store, resume, most and most_draining
+ * Given    all      its store, resume and limits
  * Returns  value    false: no thread, logged
  */
 bool connections_start(struct connections *all)
@@ -117,7 +117,7 @@ bool connections_start(struct connections *all)
 	return error == 0;
 }
 
-/* Ends the watch, after all of them were closed. */
+/* Ends the watch thread, after all connections were closed. */
 void connections_stop(struct connections *all)
 {
 	all->stopping = true;
@@ -125,9 +125,9 @@ void connections_stop(struct connections *all)
 	pthread_mutex_destroy(&all->lock);
 }
 
-/* Watches over a new connection.
+/* Adds a new connection.
  *
- * Given    seconds   in which it must have come to something
+ * Given    seconds   in which the headers of the first request must arrive
  * Returns  value     for connection_closed; NULL: no memory
  */
 struct connection *connection_opened(struct connections *all, int fd, double seconds)
@@ -146,7 +146,7 @@ struct connection *connection_opened(struct connections *all, int fd, double sec
 	return connection;
 }
 
-/* Takes it off the list, or drains what its client is still sending, by a descriptor of our own. */
+/* Removes it from the list, or drains what its client still sends, through a duplicate of its descriptor. */
 void connection_closed(struct connections *all, struct connection *connection)
 {
 	all->n--;
@@ -164,7 +164,7 @@ void connection_closed(struct connections *all, struct connection *connection)
 		free(connection);
 }
 
-/* Has a suspended request resumed by its handle, when a study changes or its time is over. */
+/* Registers a suspended request, to be resumed by its handle when its study changes or its time is over. */
 void connection_wait(struct connections *all, struct connection *connection, void *handle, int64_t id,
                      unsigned changes, double until)
 {
@@ -172,5 +172,5 @@ void connection_wait(struct connections *all, struct connection *connection, voi
 	connection->id = id;
 	connection->changes = changes;
 	connection->until = until;
-	connection->handle = handle; // the last, for it says that the others are there
+	connection->handle = handle; // written last: the watch thread reads the others once it is set
 }

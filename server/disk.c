@@ -1,7 +1,7 @@
 /* The file system under a database.
  *
- * Three levels of what is free: above `reserve` new studies are taken, below it those that are stored still run, and
- * when nothing is left the ballast makes room for what frees more.  Long answers are spooled above the reserve alone. */
+ * Three levels of free space: above the reserve new studies are accepted; below it stored studies still run; on a full
+ * disk deleting the ballast file makes room for changes that free more.  Long answers are spooled above the reserve only. */
 #include "server/disk.h"
 
 #include <errno.h>
@@ -23,21 +23,21 @@
 enum {
 	RESERVE_MAX = 256 << 20, /* [bytes] */
 	BALLAST_MAX = 16 << 20,  /* [bytes] */
-	RESERVE_PART = 16,       /* of the whole disk, where that is less */
+	RESERVE_PART = 16,       /* of the whole disk, if that is less */
 	BALLAST_PART = 32,
 	WAL_MAX = 4 << 20, /* [bytes] */
 	WAL_PART = 64,
-	SPOOL_PART = 8,           /* of what is to spare, for one spooled answer */
+	SPOOL_PART = 8,           /* of the spare space, for one spooled answer */
 	LOCK_TRIES = 50,          /* half a second together */
 	LOCK_PAUSE_NS = 10000000, /* [ns] */
 };
 
-/* Finds the one name of a database: a lock beside a link to it would let a second server in.  NULL, or why there is none. */
+/* Resolves the path of a database: a lock beside a link to it would let a second server in.  NULL, or the reason of a failure. */
 static const char *identify(struct disk *disk, const char *path)
 {
 	struct stat about;
 	if (!realpath(path, disk->database)) {
-		// an empty file is a new database; SQLite, too, makes the one that a link leads to
+		// an empty file is a new database; SQLite also creates the target of a dangling link
 		int file = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
 		if (file < 0)
 			return strerror(errno);
@@ -53,7 +53,7 @@ static const char *identify(struct disk *disk, const char *path)
 	           : NULL;
 }
 
-/* Notes what a file is, by which it is known again. */
+/* Records the identity of a file, for `same`. */
 static bool note(const char *path, struct disk_file *file)
 {
 	struct statx about;
@@ -71,23 +71,23 @@ static bool same(const struct disk_file *p, const struct disk_file *q)
 	return p->device == q->device && p->inode == q->inode && p->birth == q->birth;
 }
 
-/* What the lock file holds. */
+/* The content of the lock file. */
 struct noted {
-	int64_t blamed;            /* the study with which the server crashed last, 0: none */
-	struct disk_file database; /* that was opened last */
+	int64_t blamed;            /* the study during which the server crashed last, 0: none */
+	struct disk_file database; /* the one opened last */
 };
 
 static struct noted noted(const struct disk *disk)
 {
 	struct noted noted = {0};
-	// what a shorter one, of an earlier version, lacks, or cannot be read, is 0
+	// members missing from the shorter file of an earlier version, or unreadable, are 0
 	ssize_t n = pread(disk->lock, &noted, sizeof noted, 0);
 	(void)n;
 	return noted;
 }
 
-/* Whether the files that were opened are still those of their names: who removes one, or puts another in its place, takes
- * away what is committed from now on.  Logged once a second.
+/* Whether the open files are still the ones at their paths: removing or replacing one would lose every later commit.
+ * Logged once a second.
  *
  * Test     service_backup: a_database_that_is_replaced_under_a_server_is_not_written_to
  */
@@ -112,7 +112,7 @@ bool disk_has_wal(const struct disk *disk)
 	return stat(name, &about) == 0 && about.st_size > 0;
 }
 
-/* Whether a WAL that an earlier server has left is that of another file, so that its pages must not go into this one.
+/* Whether the WAL left by an earlier server belongs to another file, so that its pages must not go into this one.
  *
  * Test     service_backup: a_wal_is_not_applied_to_another_database
  */
@@ -131,9 +131,9 @@ static bool strange_wal(const struct disk *disk)
 
 /* Locks a database for this process.
  *
- * Given    path   of the database; an empty one is made if there is none
- * Returns  disk   its one name is for SQLite too; for disk_leave, whatever the value
- *          value  false: another server has it, or the lock cannot be made; logged
+ * Given    path   of the database; an empty file is created if there is none
+ * Returns  disk   its resolved path is for SQLite too; for disk_leave, whatever the value
+ *          value  false: another server has it, or it cannot be locked; logged
  * Test     unit_store: a_store_in_use_is_not_opened_again, a_store_in_use_is_not_opened_by_another_name
  */
 bool disk_take(struct disk *disk, const char *path)
@@ -149,7 +149,7 @@ bool disk_take(struct disk *disk, const char *path)
 	snprintf(disk->ballast, sizeof disk->ballast, "%s-ballast", disk->database);
 	disk->lock = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
 	bool ours = disk->lock >= 0 && flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
-	// a server that was just killed keeps its lock until its memory is given back
+	// a server that was just killed keeps its lock until the kernel has freed its memory
 	for (int i = 0; !ours && errno == EWOULDBLOCK && i < LOCK_TRIES; i++) {
 		nanosleep(&(struct timespec){.tv_nsec = LOCK_PAUSE_NS}, NULL);
 		ours = flock(disk->lock, LOCK_EX | LOCK_NB) == 0;
@@ -180,7 +180,7 @@ bool disk_replace(struct disk *disk, const char *by)
 	return ok && disk_sync(disk->database);
 }
 
-/* Makes sure that a WAL beside the database is its own, and notes whose the next one will be; false: it is not, logged. */
+/* Checks that a WAL beside the database belongs to it, and records the database as owner of the next; false: it does not, logged. */
 bool disk_found(struct disk *disk)
 {
 	struct noted now = noted(disk);
@@ -188,11 +188,11 @@ bool disk_found(struct disk *disk)
 		return false;
 	now.database = disk->files[0];
 	ssize_t n = pwrite(disk->lock, &now, sizeof now, 0);
-	(void)n; // a disk that is full loses a check, not a study
+	(void)n; // on a full disk only this check is lost, not a study
 	return true;
 }
 
-/* Unlocks it; the ballast goes, if this process has the lock. */
+/* Unlocks it; the ballast file is deleted if this process has the lock. */
 void disk_leave(struct disk *disk)
 {
 	if (disk->lock < 0)
@@ -202,7 +202,7 @@ void disk_leave(struct disk *disk)
 	close(disk->lock);
 }
 
-/* Puts the entries of a file's folder on the disk, so that a new file is there after a power cut. */
+/* Syncs the folder of a file, so that a new file's entry survives a power cut. */
 bool disk_sync(const char *path)
 {
 	char folder[PATH_MAX];
@@ -216,20 +216,20 @@ bool disk_sync(const char *path)
 	return synced;
 }
 
-/* Notes the study with which the server crashes; it is not for a power cut, so it need not be synced. */
+/* Records the study during which the server crashes; it need not survive a power cut, so it is not synced. */
 void disk_blame(const struct disk *disk, int64_t id)
 {
 	ssize_t n = pwrite(disk->lock, &id, sizeof id, 0);
 	(void)n;
 }
 
-/* The study that was noted last, 0: none. */
+/* The study that was recorded last, 0: none. */
 int64_t disk_blamed(const struct disk *disk)
 {
 	return noted(disk).blamed;
 }
 
-/* Puts the ballast there, if it is not. */
+/* Creates the ballast file, if it does not exist. */
 static bool ballasted(const struct disk *disk, int64_t size)
 {
 	int file = open(disk->ballast, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -242,7 +242,7 @@ static bool ballasted(const struct disk *disk, int64_t size)
 	return whole;
 }
 
-/* How large a disk is, and what is free on it above the reserve, 256 MiB or a 16th of a small one [bytes]. */
+/* Size of the disk, and free space above the reserve, which is 256 MiB or 1/16 of a small disk [bytes]. */
 static bool measure(const struct disk *disk, int64_t *size, int64_t *spare)
 {
 	struct statvfs of;
@@ -253,15 +253,15 @@ static bool measure(const struct disk *disk, int64_t *size, int64_t *spare)
 	return true;
 }
 
-/* A WAL that is long on a small disk could leave no room for its pages in the database itself. */
+/* On a small disk a long WAL could leave no space for its pages in the database itself. */
 int64_t disk_wal_most(const struct disk *disk)
 {
 	int64_t size, spare;
 	return measure(disk, &size, &spare) ? MIN(size / WAL_PART, WAL_MAX) : WAL_MAX;
 }
 
-/* Whether new studies may be taken: there is something to spare, on the disk or in the database's own free pages, and the
- * ballast is there.  What goes into free pages passes through the WAL, for which a half of the reserve must be left.
+/* Whether new studies may be accepted: there is spare space on the disk or in the database's free pages, and the ballast file
+ * exists.  Data for free pages pass through the WAL, for which half of the reserve must be free.
  *
  * Given    reusable   [bytes] of free pages
  * Test     service_disk: a_full_disk_refuses_studies_answers_questions_and_is_survived,
@@ -275,9 +275,9 @@ bool disk_roomy(const struct disk *disk, int64_t reusable)
 	return spare >= 0 || (spare + reusable >= 0 && spare >= -MIN(size / RESERVE_PART, RESERVE_MAX) / 2);
 }
 
-/* Makes a file without a name for bytes, if there is room to spare for them: it is gone when it is closed.
+/* Opens an unnamed temporary file for n bytes, if there is spare space for them; closing deletes it.
  *
- * Returns  value   its descriptor, for the caller to close; -1: none
+ * Returns  value   its descriptor, for the caller to close; -1: no space
  * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names
  */
 int disk_spool(const struct disk *disk, size_t n)
@@ -285,13 +285,13 @@ int disk_spool(const struct disk *disk, size_t n)
 	char folder[PATH_MAX];
 	int64_t size, spare;
 	snprintf(folder, sizeof folder, "%s", disk->database);
-	// a part of what is left each time: however many are written at once, they do not use it up
+	// a fraction of the remaining space for each file: many files at once do not use it up
 	if (!measure(disk, &size, &spare) || (int64_t)n > spare / SPOOL_PART)
 		return -1;
 	return open(dirname(folder), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
 }
 
-/* Gives the ballast up. */
+/* Deletes the ballast file. */
 void disk_relieve(const struct disk *disk)
 {
 	unlink(disk->ballast);

@@ -1,7 +1,7 @@
-/* disk.h - the file system under a database: who owns it, and whether it has room.
+/* disk.h - the file system under a database: its lock file, its ballast file and free space.
  *
- * PATH-lock keeps a second server away, and holds the study with which the last one crashed.  PATH-ballast is given up
- * so that deleting works on a full disk.  PATH is the file's one name, whatever links lead to it. */
+ * PATH-lock keeps a second server away, and records the study during which the last server crashed.  PATH-ballast is
+ * deleted so that deleting studies works on a full disk.  PATH is resolved: symbolic links are followed. */
 #ifndef DISK_H
 #define DISK_H
 
@@ -12,36 +12,36 @@
 #include <stdint.h>
 #include <time.h>
 
-/* by which a file is known again when its name may be another's */
+/* identifies a file even when its path has become another file's */
 struct disk_file {
 	uint64_t device, inode,
-	    birth; /* an inode may be given to a new file: birth [ns], 0 where the file system has none */
+	    birth; /* inodes are reused, hence the birth time [ns]; 0 where the file system has none */
 };
 
 struct disk {
 	int lock;
-	char database[PATH_MAX]; /* its one name */
+	char database[PATH_MAX]; /* its resolved path */
 	char ballast[PATH_MAX + 8], lock_name[PATH_MAX + 8];
-	struct disk_file files[2]; /* the database and the lock, as they were opened */
-	_Atomic time_t reported;   /* when they were found replaced last */
+	struct disk_file files[2]; /* the database and the lock, when they were opened */
+	_Atomic time_t reported;   /* when their replacement was logged last */
 };
 
 bool disk_take(struct disk *disk,
-               const char *path);   /* false: another server has it, or it cannot be; logged */
-bool disk_found(struct disk *disk); /* after that: false when a WAL beside it is another file's; logged */
+               const char *path);   /* locks it; false: another server has the lock, or an error; logged */
+bool disk_found(struct disk *disk); /* after that: false: the WAL belongs to another file; logged */
 void disk_leave(struct disk *disk);
-bool disk_intact(struct disk *disk); /* the files are still those that were opened; else logged */
-/* puts another file in the place of the database, which becomes PATH-replaced, as does its WAL; false: logged */
+bool disk_intact(struct disk *disk); /* the files at the paths are the opened ones; else logged */
+/* renames the database and its WAL to PATH-replaced and PATH-replaced-wal, and `by` to PATH; false: logged */
 bool disk_replace(struct disk *disk, const char *by);
 bool disk_has_wal(const struct disk *disk);
-bool disk_sync(const char *path);                     /* the entries of the folder of a file */
-void disk_blame(const struct disk *disk, int64_t id); /* notes a study, 0: none; signal-safe */
-int64_t disk_blamed(const struct disk *disk);         /* the one noted last */
-/* room for new studies, on the disk or in so many reusable bytes of the database, and the ballast is there */
+bool disk_sync(const char *path);                     /* fsync of the folder of a file */
+void disk_blame(const struct disk *disk, int64_t id); /* records a study, 0: none; async-signal-safe */
+int64_t disk_blamed(const struct disk *disk);         /* the study recorded last */
+/* there is space for new studies, on the disk or in the database's reusable bytes, and the ballast exists */
 bool disk_roomy(const struct disk *disk, int64_t reusable);
-int64_t disk_wal_most(const struct disk *disk); /* bytes of a WAL, up to which it need not be written back */
-void disk_relieve(const struct disk *disk);     /* gives the ballast up */
-/* descriptor of a file without a name that may hold n bytes; -1: there is no room */
+int64_t disk_wal_most(const struct disk *disk); /* [bytes] of the WAL up to which no checkpoint is needed */
+void disk_relieve(const struct disk *disk);     /* deletes the ballast file */
+/* descriptor of an unnamed temporary file for n bytes; -1: no space */
 int disk_spool(const struct disk *disk, size_t n);
 
 #endif

@@ -1,4 +1,4 @@
-/* fair_share.c - which client each answer that takes long is for. */
+/* fair_share.c - the client of each slow answer. */
 #include "server/fair_share.h"
 
 #include <stdio.h>

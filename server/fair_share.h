@@ -1,4 +1,4 @@
-/* fair_share.h - at most so many answers that take long at once, of one client and in all.  Any thread. */
+/* fair_share.h - limits on the slow answers at a time, of one client and in all.  Any thread. */
 #ifndef FAIR_SHARE_H
 #define FAIR_SHARE_H
 
@@ -6,18 +6,18 @@
 #include <stdbool.h>
 
 enum {
-	SHARES = 64,            /* answers that wait or are made, all together; more are refused */
-	SHARE_MOST = 16,        /* of one client's */
+	SHARES = 64,            /* slow answers that wait or are made, of all clients; more are refused */
+	SHARE_MOST = 16,        /* of one client */
 	SHARE_CLIENT_SIZE = 64, /* [bytes] */
 };
 
 struct shares {
 	pthread_mutex_t lock;
-	char clients[SHARES][SHARE_CLIENT_SIZE]; /* whose each is, "": nobody's */
+	char clients[SHARES][SHARE_CLIENT_SIZE]; /* the client of each place, "": free */
 };
 
 int share_take(struct shares *shares,
-               const char *client); /* its place, for share_give; -1: there are as many as may be */
+               const char *client); /* its place, for share_give; -1: a limit is reached */
 void share_give(struct shares *shares, int place);
 
 #endif

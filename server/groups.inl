@@ -1,6 +1,6 @@
-/* Included by workers.c, after what takes and hands over steps: what the coordinator of worker groups asks, in its threads.
+/* Included by workers.c, after `take` and `hand_over`: the callbacks of the coordinator of worker groups, called in its threads.
  *
- * A block that a group has keeps its study in memory, but not from its end: where the block is late it has run elsewhere. */
+ * A block that a group has keeps its study in memory, but does not delay its end: a late block is run elsewhere too. */
 
 static bool groups_wanted(void *of)
 {
@@ -42,7 +42,7 @@ static bool groups_take(void *of, int group, const uint64_t refused[], int n_ref
 	return taken;
 }
 
-/* The study of a block that is out. */
+/* The study of a block assigned to a group. */
 static struct job *groups_job(struct work *work, const struct coordinator_block *block)
 {
 	struct job *job = TAILQ_FIRST(&work->jobs);
@@ -63,7 +63,7 @@ static void groups_back(void *of, int group, const struct coordinator_block *blo
 	pthread_mutex_unlock(&work->lock);
 }
 
-/* Takes the values of a block, the first of it that come. */
+/* Takes the values of a block, unless it was already done. */
 static void groups_done(void *of, int group, const struct coordinator_block *block,
                         const struct message *message, const double *values)
 {
@@ -108,7 +108,7 @@ static struct coordinator *groups_start(struct work *work, const struct launch *
 	return coordinator_start(launch, &source);
 }
 
-/* Ends the groups; nobody wakes them any more. */
+/* Stops the groups; no thread wakes them any more. */
 static void groups_stop(struct work *work)
 {
 	pthread_mutex_lock(&work->lock);

@@ -1,14 +1,14 @@
-/* A request, from its head to its answer; a route answers in the thread of its connection (server/daemon.c).
+/* A request, from its head to its answer; usually a route answers in the thread of the connection (server/daemon.c).
  *
- * 1. The target and the headers are judged before a byte of the body is read.  A refusal of a request with a body is sent
- *    at once and the connection closed; what the client still sends is read for a while (deadlines.h), for a closed
- *    socket with unread bytes is reset, and the reset overtakes our answer.
+ * 1. The target and the headers are checked before a byte of the body is read.  A refusal of a request with a body is sent
+ *    at once and the connection closed; what the client still sends is read for a while (deadlines.h), because closing a
+ *    socket with unread bytes sends a reset, which can overtake our answer.
  * 2. The body is collected, up to its limit.
- * 3. A route answers, or the connection is suspended until the study changes, and then the route is asked again.  What
- *    takes long is answered in a thread of its own, while the connection is suspended, or abandoned when the client has closed it
+ * 3. A route answers, or the connection is suspended until the study changes, and then the route is called again.  A slow
+ *    answer is made in a thread of its own while the connection is suspended; it is abandoned when the client disconnects
  *    or the server stops.
- * 4. What is long is put into a file without a name, by that thread, so that no client who reads slowly keeps it in memory
- *    and no other client waits for it. */
+ * 4. That thread writes a long answer to an unnamed temporary file, so that a slow reader keeps none in memory and no other
+ *    client waits for it. */
 #include "server/http_calls.h"
 
 #include <arpa/inet.h>
@@ -26,16 +26,16 @@
 #include "server/token.h"
 
 enum {
-	TURN_TICK_NS = 50000000,  /* [ns] until who waits for one is asked whether he is still wanted */
-	GONE = 499,               /* reported of a request whose client has gone */
-	ASIDE_NICENESS = 5,       /* between other answers and the workers */
+	TURN_TICK_NS = 50000000,  /* [ns] between checks whether a waiting answer is still wanted */
+	GONE = 499,               /* logged status of a request whose client has disconnected */
+	ASIDE_NICENESS = 5,       /* between the other answers and the workers */
 	BODIES_MAX = 64 << 20,    /* [bytes] being received or read at a time */
-	SPOOLED_PART = 64 * 1024, /* [bytes] read of one at a time */
-	SEND_S = 60,              /* [s] for an answer to arrive, besides */
-	SEND_RATE = 16 * 1024,    /* [bytes/s] that a client takes at least */
+	SPOOLED_PART = 64 * 1024, /* [bytes] read from a spooled answer at a time */
+	SEND_S = 60,              /* [s] for an answer to arrive, plus its length by SEND_RATE */
+	SEND_RATE = 16 * 1024,    /* [bytes/s] a client must receive at least */
 };
 
-/* An argument of the request's target, or the value for an absent or an empty one. */
+/* A query parameter of the request, or its default when it is absent or empty. */
 const char *http_argument(const struct request *request, const char *name)
 {
 	const char *value = MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
@@ -62,7 +62,7 @@ static double wait_until(const struct request *request)
 	return request->arrived + (seconds < most ? seconds : most);
 }
 
-/* The reply that says what is wrong with a request.
+/* An error reply.
  *
  * Given    fault      its kind
  *          detail     a sentence about this request
@@ -107,7 +107,7 @@ static struct connection *connection_of(struct MHD_Connection *connection)
 	return MHD_get_connection_info(connection, MHD_CONNECTION_INFO_SOCKET_CONTEXT)->socket_context;
 }
 
-/* Closes a connection unless this is called again within so many seconds. */
+/* Sets the deadline of a connection: it is closed unless this is called again in time. */
 static void allow(struct MHD_Connection *connection, double seconds)
 {
 	connection_of(connection)->deadline = connection_now() + seconds;
@@ -124,7 +124,7 @@ static void drop_body(struct server *server, struct reply *reply)
 	reply->length = 0;
 }
 
-/* Never called: of an answer without a body. */
+/* Never called: for an answer whose body is not sent. */
 static ssize_t no_bytes(void *of, uint64_t at, char *bytes, size_t n)
 {
 	(void)of;
@@ -154,7 +154,7 @@ static void close_spooled(void *of)
 	free(spooled);
 }
 
-/* A response that is read from a reply's file, which is not there any more when it has been sent; NULL: no memory. */
+/* A response that is read from a reply's file, which is closed and so deleted once sent; NULL: no memory. */
 static struct MHD_Response *response_spooled(struct spools *spools, struct reply *reply)
 {
 	struct spooled *spooled = malloc(sizeof *spooled);
@@ -170,10 +170,10 @@ static struct MHD_Response *response_spooled(struct spools *spools, struct reply
 	return response;
 }
 
-/* What libmicrohttpd sends for a reply, which has its body then; NULL: out of memory.
+/* The response of libmicrohttpd for a reply, whose body it takes over; NULL: out of memory.
  *
- * It writes the body's length into a 304, too, which must be that of the 200 (RFC 9110 section 8.6): so a 304 keeps its
- * body, which is not sent.  Where that was not made, it leaves the length out, but must close the connection. */
+ * libmicrohttpd writes Content-Length into a 304 too, where it must equal the length of the 200 (RFC 9110 section 8.6): so a
+ * 304 keeps its body, which is not sent.  If no body was made, the header is omitted, but the connection must be closed. */
 static struct MHD_Response *response_of(const struct request *request, struct reply *reply)
 {
 	struct MHD_Response *response;
@@ -195,7 +195,7 @@ static struct MHD_Response *response_of(const struct request *request, struct re
 	return response;
 }
 
-/* Counts and logs a reply of so many bytes.  Who has gone is counted as others count it: it is no failure of the server's. */
+/* Counts and logs a reply of n bytes.  A client that has disconnected counts as status 499, as in nginx: no server error. */
 static void answered(const struct request *request, const struct reply *reply, size_t n)
 {
 	const double seconds = connection_now() - request->arrived;
@@ -263,7 +263,7 @@ static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const ch
 	return MHD_YES;
 }
 
-/* Whether there is something to do for a request, by its head: else that has a fault. */
+/* Checks the head of a request; afterwards head.fault says whether it is refused. */
 static void judge(struct request *request, bool needs_host)
 {
 	struct server *server = request->server;
@@ -302,7 +302,7 @@ static void judge(struct request *request, bool needs_host)
 		head_refuse(head, API_UNAVAILABLE, true, "too many request bodies are being sent");
 }
 
-/* Keeps more of the body, or drops it when there is a fault; no more comes than its declared length. */
+/* Appends to the body, or discards it after a fault; libmicrohttpd passes at most the declared length. */
 static void collect(struct request *request, const char *bytes, size_t n)
 {
 	if (!request->body && !(request->body = malloc(request->head.length)))
@@ -313,7 +313,7 @@ static void collect(struct request *request, const char *bytes, size_t n)
 	request->length += n;
 }
 
-/* Called with the target as it came, before it is decoded: makes the request. */
+/* Called with the target as received, before it is decoded: creates the request. */
 void *http_begin(void *of, const char *target, struct MHD_Connection *connection)
 {
 	struct server *server = of;
@@ -326,13 +326,13 @@ void *http_begin(void *of, const char *target, struct MHD_Connection *connection
 	request->target_end = request->target + strlen(request->target);
 	snprintf(request->question, sizeof request->question, "%s", request->target);
 	size_t n = head_target(&request->head, request->target);
-	// arguments that are not to be parsed end where they begin; this is libmicrohttpd's memory, and it looks next
+	// an invalid query is cut off before libmicrohttpd, which owns this memory, parses it next
 	if (request->target[n] == '?')
 		((char *)request->target)[n + 1] = '\0';
 	return request;
 }
 
-/* Sends a refusal by the socket itself, past libmicrohttpd: for a head that may have left it no room for an answer. */
+/* Sends a refusal directly to the socket: a head that is too large may leave libmicrohttpd no memory for an answer. */
 static enum MHD_Result refuse_head(struct request *request)
 {
 	char text[512];
@@ -346,7 +346,7 @@ static enum MHD_Result refuse_head(struct request *request)
 	             reply.status, api_faults[fault].title, reply.type, reply.length, (int)reply.length,
 	             reply.body ? reply.body : "");
 	connection_of(request->connection)->lingers = true;
-	// a socket that has just been read from has room for one line; a client that has gone needs no answer
+	// the send buffer has room for so few bytes; a client that has disconnected needs no answer
 	if (send(connection_of(request->connection)->fd, text, (size_t)n, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
 		reply.gone = true;
 	answered(request, &reply, reply.length);
@@ -354,7 +354,7 @@ static enum MHD_Result refuse_head(struct request *request)
 	return MHD_NO;
 }
 
-/* Ends what the answer depends on, begun with the target: by the Accept, or by nothing when both are too long. */
+/* Completes the cache key, which begins with the target, by the Accept header; empty when both are too long. */
 static void question_end(struct request *request)
 {
 	size_t n = (size_t)(request->target_end - request->target), room = sizeof request->question;
@@ -363,7 +363,7 @@ static void question_end(struct request *request)
 		request->question[0] = '\0';
 }
 
-/* Whose share a request is of that has no token. */
+/* The name that counts slow answers of a client without a token: its IP address. */
 static void client_name(struct request *request)
 {
 	const struct sockaddr *address =
@@ -374,7 +374,7 @@ static void client_name(struct request *request)
 	inet_ntop(address->sa_family, bytes, request->client, sizeof request->client);
 }
 
-/* The headers are here: judges them. */
+/* Called when the headers have arrived: checks them. */
 static enum MHD_Result head_came(struct request *request, const char *method, const char *path,
                                  const char *version)
 {
@@ -393,7 +393,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	    MHD_get_connection_info(request->connection, MHD_CONNECTION_INFO_REQUEST_HEADER_SIZE)->header_size;
 	if (n > HEAD_BYTES_MAX)
 		return refuse_head(request);
-	// one NUL each ends the method and the target, where they are in the head
+	// libmicrohttpd ends the method and the target by one NUL each, in place of single spaces
 	if (request->target != method + strlen(method) + 1 || version != request->target_end + 1)
 		head_refuse(&request->head, API_BAD_REQUEST, true,
 		            "a request line must be method, target and version, separated by one space");
@@ -403,7 +403,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 		           MHD_get_connection_values(request->connection, MHD_HEADER_KIND, NULL, NULL));
 	judge(request, strcmp(version, "HTTP/1.0") != 0);
 	question_end(request);
-	// without a body, the refusal can wait for the next call, and the connection be kept
+	// without a body, the refusal is sent at the next call, and the connection kept
 	if (request->head.fault == API_NO_FAULT || !(request->head.has_body || request->head.close))
 		return MHD_YES;
 	connection_of(request->connection)->lingers = true;
@@ -411,7 +411,7 @@ static enum MHD_Result head_came(struct request *request, const char *method, co
 	return send_reply(request, &reply);
 }
 
-/* Goes on with a suspended request, whose reply is made. */
+/* Resumes a suspended request, whose reply is made. */
 static void go_on(struct request *request)
 {
 	struct server *server = request->server;
@@ -422,14 +422,14 @@ static void go_on(struct request *request)
 	server->aside--;
 }
 
-/* Whether a thread of its own would run at once. */
+/* Whether a new thread would have its turn at once. */
 static bool slot_free(struct server *server)
 {
 	int n = 0;
 	return sem_getvalue(&server->turns, &n) == 0 && n > 0;
 }
 
-/* Waits for a turn; false: nobody waits for the answer any more. */
+/* Waits for a turn; false: the client no longer waits for the answer. */
 static bool take_turn(const struct request *request)
 {
 	bool had = false;
@@ -444,7 +444,7 @@ static bool take_turn(const struct request *request)
 	return had;
 }
 
-/* Makes the reply to a suspended request, when it is its turn; none of use when nobody waits for it any more. */
+/* Makes the reply to a suspended request, at its turn; an error when the client no longer waits for it. */
 static void *answer_aside(void *of)
 {
 	struct request *request = of;
@@ -468,7 +468,7 @@ static void *answer_aside(void *of)
 	return NULL;
 }
 
-/* Gives a request to a thread of its own, which has it from then on; false: its client has too many there, or all have. */
+/* Moves a request to a thread of its own, which owns it from then on; false: too many slow answers, of its client or in all. */
 static bool put_aside(struct request *request)
 {
 	pthread_t thread;
@@ -532,7 +532,7 @@ enum MHD_Result http_answer(void *of, struct MHD_Connection *connection, const c
 	request->reply.file = 0;
 	if (reply.status == 200 && reply.etag[0] && http_known(request, reply.etag))
 		reply.status = 304;
-	// of more who wait than may, the last wait for nothing
+	// above the limit of waiting requests, further ones are answered at once
 	struct connections *all = &server->connections;
 	reply.gone |= reply.waits && connection_of(connection)->unwanted;
 	if (reply.status != 304 || !reply.waits || connection_now() >= wait_until(request) ||

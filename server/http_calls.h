@@ -1,4 +1,4 @@
-/* http_calls.h - what libmicrohttpd calls: of is the server, kept the request. */
+/* http_calls.h - callbacks of libmicrohttpd: `of` is the server, `kept` the request. */
 #ifndef HTTP_CALLS_H
 #define HTTP_CALLS_H
 

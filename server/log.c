@@ -1,6 +1,6 @@
 /* A line is the UTC time, what happened, and a newline, written by one call so that threads do not mix.
- * What is not visible ASCII becomes '?': a line is a line and a terminal is left alone, whatever a client put into a
- * path. */
+ * Bytes that are not visible ASCII become '?': a path sent by a client can neither start a new line nor control a
+ * terminal. */
 #include "server/log.h"
 
 #include <stdarg.h>

@@ -1,4 +1,4 @@
-/* log.h - one line on stderr for each thing worth knowing.  Any thread. */
+/* log.h - one line on stderr for each event.  Any thread. */
 #ifndef LOG_H
 #define LOG_H
 

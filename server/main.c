@@ -23,12 +23,12 @@
 #include "server/workers.h"
 
 enum {
-	STOP_MAX = 25, /* [s] from the signal to the end, come what may: what is accepted is on the disk */
-	EXPIRY_PERIOD = 60000000, /* [us] between two looks for studies that are not to be kept any longer */
-	STORE_WAIT_MS = 100,      /* for the connection to the database, when workers do not end soon */
+	STOP_MAX = 25, /* [s] from the signal to the exit in any case: accepted studies are on the disk */
+	EXPIRY_PERIOD = 60000000, /* [us] between two searches for studies to delete */
+	STORE_WAIT_MS = 100, /* for the writing connection to the database, when workers do not exit in time */
 };
 
-/* A standard stream that is closed leads to nowhere: else a file opened later would take its number, and what is printed. */
+/* Opens /dev/null for each closed standard stream: else a file opened later would get its number, and the output. */
 static void hold_streams(void)
 {
 	int file = open("/dev/null", O_RDWR);
@@ -37,7 +37,7 @@ static void hold_streams(void)
 	close(file);
 }
 
-/* Reports our state to systemd, if it has started us; sd_notify(3) has the words. */
+/* Reports our state to systemd, if it has started us; see sd_notify(3) for the states. */
 static void notify(const char *state)
 {
 	const char *path = getenv("NOTIFY_SOCKET");
@@ -46,7 +46,7 @@ static void notify(const char *state)
 	if (n == 0 || n >= sizeof to.sun_path)
 		return;
 	memcpy(to.sun_path, path, n);
-	// a socket without a file
+	// a socket in the abstract namespace
 	if (path[0] == '@')
 		to.sun_path[0] = '\0';
 	socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + n);
@@ -56,8 +56,8 @@ static void notify(const char *state)
 	close(end);
 }
 
-/* Waits for the signal to stop; meanwhile what is not to be kept any longer is deleted, a study at a time, and systemd, when it
- * watches, hears that the store answers.
+/* Waits for the signal to stop; meanwhile deletes expired studies one at a time, and notifies systemd's watchdog, if enabled,
+ * while the store answers.
  *
  * Test     service_retention: studies_and_samples_are_deleted_when_their_time_is_up
  */
@@ -96,13 +96,13 @@ static int serve(struct server *server, const sigset_t *signals)
 		notify("READY=1");
 		log_line("stopping: %s", strsignal(await(server, signals)));
 		notify("STOPPING=1");
-		// the next signal ends the program at once, and so does the clock
+		// the next signal or the alarm ends the program at once
 		alarm(STOP_MAX);
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
 		ended = daemon_stop(server);
 	}
 	ended &= work_stop(server->work);
-	// what is accepted is on the disk: the next start goes on as after a crash
+	// accepted studies are on the disk: the next start resumes them as after a crash
 	if (!ended)
 		store_stop(server->store, STORE_WAIT_MS);
 	if (!ended)
@@ -126,15 +126,15 @@ int main(int argc, char **argv)
 		return backup_make(options.database, options.backup) ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options.restore)
 		return backup_restore(options.database, options.restore) ? EXIT_SUCCESS : EXIT_FAILURE;
-	// what was taken for one body or result goes back to the system with it
+	// memory of one large body or result returns to the system when it is freed
 	mallopt(M_MMAP_THRESHOLD, 256 * 1024);
 	mallopt(M_TRIM_THRESHOLD, 1024 * 1024);
-	// no memory for a solver is the end of a try, not of the server
+	// GSL's default handler aborts: out of memory must end the attempt, not the server
 	gsl_set_error_handler_off();
-	// a client that has gone, and a file that may not grow, are errors of a write and no more
+	// a closed connection and the file size limit must be errors of write(2), not kill the server
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	// there is nothing to read again, and the log belongs to the process that started us: a closed terminal does not end studies
+	// no configuration to reload, no log file to reopen; and a closed terminal must not end studies
 	signal(SIGHUP, SIG_IGN);
 	// blocked before any thread starts, so that only this one sees them
 	sigemptyset(&signals);

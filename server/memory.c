@@ -1,4 +1,4 @@
-/* What memory the machine has, or the control groups of this process leave it. */
+/* The memory of the machine, or the limit of the control groups of this process. */
 #include "server/memory.h"
 
 #include <limits.h>
@@ -11,7 +11,7 @@ enum { LINE = 512 };
 
 static const double MIB = 1 << 20;
 
-/* The number that a file begins with, after a word if there is one; INFINITY: none, such as "max". */
+/* The number at the start of the first line that begins with a word (empty: any); INFINITY: none, such as "max". */
 static double number_in(const char *path, const char *word)
 {
 	char line[LINE];
@@ -27,7 +27,7 @@ static double number_in(const char *path, const char *word)
 	return number;
 }
 
-/* The least limit of a control group and of those that it is in [bytes]. */
+/* The least limit of a control group and its ancestors [bytes]. */
 static double group_least(const char *root, const char *mount, const char *file, char *group)
 {
 	double least = INFINITY;
@@ -40,7 +40,7 @@ static double group_least(const char *root, const char *mount, const char *file,
 	return least;
 }
 
-/* Half of the memory that this process may have: that of the machine, or of a control group (version 1 or 2) when that is less.
+/* Half of the memory available to this process: of the machine, or of a control group (version 1 or 2) if that is less.
  *
  * Given    root    ""; a folder that replaces / in tests
  * Returns  value   MiB   at least 1

@@ -1,4 +1,4 @@
-/* Counters as the text format 0.0.4 of Prometheus has them. */
+/* Counters in Prometheus text format 0.0.4. */
 #include "server/metrics.h"
 
 #include <stdio.h>
@@ -71,7 +71,7 @@ static void durations(struct writer *w, const struct metrics *metrics)
 	sample(w, "pound_http_request_duration_seconds_count", "", (double)sum);
 }
 
-/* Those of a status that cannot be counted are left out. */
+/* Leaves out a status whose studies cannot be counted. */
 static void studies(struct writer *w, struct store *store)
 {
 	static const char *const states[] = {"queued", "running", "succeeded", "failed", "cancelled"};

@@ -1,6 +1,6 @@
-/* motion_reply.c - the ground motions of a study and their response spectra, made once more for each request.
+/* motion_reply.c - the ground motions of a study and their response spectra, computed again for each request.
  *
- * Of unlike versions they may differ, so that the run of another one is not opened. */
+ * They may differ between versions, so a run of another version is not opened. */
 #include "server/motion_reply.h"
 
 #include <stdio.h>
@@ -10,9 +10,9 @@
 #include "schema/result/motion_spectrum.h"
 #include "schema/result/result_json.h"
 
-enum { SAMPLES_MAX = 1000000 /* of one answer, but of one signal any number */ };
+enum { SAMPLES_MAX = 1000000 /* of an answer with all signals; one signal may have any number */ };
 
-/* One whole number of a request; -1: it has none. */
+/* An integer query parameter; -1: absent. */
 static int whole(const struct request *request, const char *name)
 {
 	const char *value = http_argument(request, name);

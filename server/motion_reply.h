@@ -5,7 +5,7 @@
 #include "server/http.h"
 #include "server/stored_run.h"
 
-/* The answer to a request for those of a study, of whatever status. */
+/* The answer to a request for the ground motions of a study, which may have any status. */
 struct reply motions_of(const struct request *request, const struct stored_run *opened);
 
 #endif

@@ -1,4 +1,4 @@
-/* A row for every option: argp reads the flags by it, and then the environment is read by it. */
+/* A table with a row for every option, for argp's flags and for the variables of the environment. */
 #include "server/options.h"
 
 #include <argp.h>
@@ -78,7 +78,7 @@ struct reading {
 	bool given[sizeof options_table / sizeof options_table[0]]; /* by a flag */
 };
 
-/* Takes a value, or ends the program, saying what `name` would take. */
+/* Sets an option, or ends the program with a message that says what `name` accepts. */
 static void take(struct argp_state *state, const struct option_row *row, const char *name, const char *value)
 {
 	const struct reading *reading = state->input;
@@ -95,7 +95,7 @@ static void take(struct argp_state *state, const struct option_row *row, const c
 		argp_error(state, "%s must be a whole number in [%d, %d], got '%s'", name, row->min, row->max, value);
 }
 
-/* Takes from the environment what no flag has given; an empty variable is none. */
+/* Takes options without a flag from the environment; an empty variable counts as absent. */
 static void take_variables(struct argp_state *state)
 {
 	const struct reading *reading = state->input;
@@ -108,7 +108,7 @@ static void take_variables(struct argp_state *state)
 	}
 }
 
-/* Called by argp first, for each flag, and last, so that variables are judged only if they count. */
+/* Called by argp first, for each flag, and last, so that variables overridden by flags are not checked. */
 static error_t parse(int key, char *value, struct argp_state *state)
 {
 	struct reading *reading = state->input;
@@ -131,9 +131,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
 
 const char *argp_program_version = "poundd " POUND_VERSION;
 
-/* Reads flags and environment; help, the version and mistakes end the program.
+/* Reads flags and environment; --help, --version and invalid options end the program.
  *
- * Returns  options   texts are those of argv and of the environment
+ * Returns  options   its texts point into argv and the environment
  * Test     unit_options: every_option_is_taken_as_a_flag_and_from_the_environment,
  *          what_a_flag_overrides_is_not_judged
  */
@@ -160,7 +160,7 @@ void options_read(struct options *options, int argc, char **argv)
 	}
 	struct reading reading = {.options = options};
 	argp_err_exit_status = WRONG_USAGE;
-	// mistakes have ended the program in there; what is left is no memory, and then nothing is known
+	// invalid options have ended the program in argp_parse; the only failure left is out of memory
 	if (argp_parse(&argp, argc, argv, 0, NULL, &reading) != 0) {
 		fputs("poundd: out of memory\n", stderr);
 		exit(EXIT_FAILURE);

@@ -1,4 +1,4 @@
-/* pages.c - what the server answers from what is built into it: pages for browsers, and example studies. */
+/* pages.c - answers built into the server: pages for browsers, and example studies. */
 #include "server/pages.h"
 
 #include <assert.h>
@@ -11,7 +11,7 @@
 #include "schema/http/page.h"
 #include "schema/json/json_writer.h"
 
-/* What lasts as long as the server: its tag is the bytes' (FNV-1a, 64 bits). */
+/* A reply with a constant body; its ETag is the FNV-1a hash of the bytes, 64 bits. */
 static struct reply lasting(const char *type, const char *text)
 {
 	uint64_t hash = 0xcbf29ce484222325;
@@ -49,7 +49,7 @@ struct reply pages_example_list(void)
 	return reply;
 }
 
-/* A file of the pages, which load nothing but each other and ask nobody but this server. */
+/* A file of the pages, which load and request nothing from other servers. */
 struct reply pages_file(int operation)
 {
 	static const struct {

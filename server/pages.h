@@ -1,4 +1,4 @@
-/* pages.h - what the server answers from what is built into it: pages for browsers, and example studies. */
+/* pages.h - answers built into the server: pages for browsers, and example studies. */
 #ifndef PAGES_H
 #define PAGES_H
 

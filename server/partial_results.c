@@ -1,5 +1,5 @@
-/* A result so far is given again for SHARE times as long as it took to make: one who asks all the time has a new one as often as a
- * twentieth of one core makes them, and each of the others at once.  Larger ones than a few MB are not kept. */
+/* A partial result is reused for SHARE times as long as it took to make: repeated requests then use at most about a twentieth of
+ * one core for new ones, and get the others at once.  Results larger than a few MB are not kept. */
 #include "server/partial_results.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ char *partial_results_take(struct partial_results *results, int64_t id, size_t *
 	return copy;
 }
 
-/* In the place of the study's last one, else of the one that ends first. */
+/* Replaces the study's last partial result, else the one that expires first. */
 void partial_results_give(struct partial_results *results, const struct partial_result *made, double took)
 {
 	char *copy = made->length < BYTES_MAX ? malloc(made->length + 1) : NULL;

@@ -31,7 +31,7 @@ static char *stored_read(const void *with, const struct study_source *of, size_t
 	return found == STORE_OK ? content : NULL;
 }
 
-/* Reads a study whose files are those of the store.
+/* Reads a study; the files that it names are read from the store.
  *
  * Test     service_records: a_study_that_names_records_gives_the_bytes_of_its_samples
  */
@@ -90,7 +90,7 @@ struct reply records_get(struct request *request)
 	struct reply reply = {.status = 200, .type = "application/octet-stream"};
 	const enum store_status status =
 	    store_record(request->server->store, sha256_of(request), &reply.body, &reply.length);
-	// the first digits are enough: an answer has the bytes of its path
+	// the first digits are enough: the bytes at a path never change
 	snprintf(reply.etag, sizeof reply.etag, "\"%.32s\"", sha256_of(request));
 	return status == STORE_OK ? reply : http_refusal(status, "there is no such record");
 }

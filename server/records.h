@@ -6,12 +6,12 @@
 #include "schema/json/problems.h"
 #include "server/http.h"
 
-/* The study of a document, for study_free, as study_from_json has it; the files that it names are those of the store. */
+/* The study of a document, as study_from_json returns it, for study_free; the files that it names are read from the store. */
 struct pound_study *records_study(struct store *store, const char *text, size_t length,
                                   struct problems *problems);
-/* The document with samples in place of these; on the heap, NULL: out of memory. */
+/* The document with samples in place of the files that it names; on the heap, NULL: out of memory. */
 char *records_inline(struct store *store, const char *text, size_t *length, const struct pound_study *study);
-/* The files that a study names; returns how many. */
+/* The SHA-256 of the files that a study names; returns how many. */
 int records_named(const struct pound_study *study, const char **sha256);
 
 struct reply records_put(struct request *request);

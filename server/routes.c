@@ -1,7 +1,7 @@
-/* What poundd answers: a function for each row of api_operations.
+/* The answers of poundd: a function for each row of api_operations.
  *
- * A study goes to the store as the bytes that came, after it was read once to see that it is one; a result comes from
- * the store as the bytes that go. */
+ * A study is stored as the bytes received, after it was parsed once to check it; a result is sent as the bytes
+ * stored. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -30,8 +30,8 @@
 enum {
 	RETRY_AFTER = 1,        /* [s] */
 	RETRY_AFTER_MAX = 60,   /* [s] */
-	RESULT_HEAD = 4096,     /* [bytes] of a result, with its version and rows */
-	TABLE_LONG = 64 * 1024, /* [bytes] of a result of which a table takes milliseconds */
+	RESULT_HEAD = 4096,     /* [bytes] at the start of a result, with its version and rows */
+	TABLE_LONG = 64 * 1024, /* [bytes] of a result from which making a table takes milliseconds */
 };
 
 static struct reply problem(enum api_fault fault, const char *detail)
@@ -44,7 +44,7 @@ static struct reply no_memory(void)
 	return problem(API_UNAVAILABLE, "out of memory");
 }
 
-/* 200 and what was made, if there was memory for it. */
+/* 200 with a body, or 503 when there was no memory for it (NULL). */
 static struct reply made(const char *type, char *body, size_t length)
 {
 	return body ? (struct reply){.status = 200, .type = type, .body = body, .length = length} : no_memory();
@@ -62,13 +62,13 @@ static struct reply refusal(enum store_status status)
 	return http_refusal(status, "there is no such study");
 }
 
-/* Studies being written, one after the other. */
+/* A list of studies that is being written. */
 struct page {
 	struct writer writer;
 	int n_workers;
-	int room;  /* studies to write yet */
-	bool more; /* one came when there was no room */
-	// of the one written last
+	int room;  /* studies that still fit */
+	bool more; /* at least one study did not fit */
+	// of the study written last
 	int64_t id;
 	char status[16], etag[64];
 	double eta_s; /* [s] NAN: unknown */
@@ -94,14 +94,14 @@ static void page_init(struct page *page, const struct request *request, int room
 	writer_init(&page->writer);
 }
 
-/* The reply when there was no study to write; what was written so far is not wanted. */
+/* The reply when the store failed or has no such study; discards what was written. */
 static struct reply page_drop(struct page *page, enum store_status status)
 {
 	free(page->writer.text);
 	return refusal(status);
 }
 
-/* The status object of the request's study, and what else is known of it. */
+/* The status object of the request's study as the reply; `page` has its id, status and remaining time. */
 static struct reply look(const struct request *request, struct page *page)
 {
 	page_init(page, request, 1);
@@ -115,7 +115,7 @@ static struct reply look(const struct request *request, struct page *page)
 
 static struct reply status(struct request *request)
 {
-	// before the look, so that no change is missed by who waits for one
+	// read before the study, so that a waiting client misses no change
 	unsigned changes = store_changes(request->server->store, request->id);
 	struct page page;
 	struct reply reply = look(request, &page);
@@ -245,7 +245,7 @@ static struct reply unread(struct request *request, enum store_status found)
 	return found == STORE_NONE ? not_ready(request) : refusal(found);
 }
 
-/* A stored document as it is. */
+/* A stored document, unchanged. */
 static struct reply document(struct request *request, const char *name)
 {
 	char *content;
@@ -254,7 +254,7 @@ static struct reply document(struct request *request, const char *name)
 	return found == STORE_OK ? made("application/json", content, length) : unread(request, found);
 }
 
-/* A stored document as it is, a long one in a file, if there may be one; for a HEAD, or a client who has it, its length. */
+/* A stored document, unchanged, a long one in a file if possible; for a HEAD, or a client that has it, only its length. */
 static struct reply document_whole(struct request *request, const char *name, bool known)
 {
 	struct server *server = request->server;
@@ -286,8 +286,8 @@ static struct reply posted(struct request *request)
 
 static const struct format result_formats[] = {{"json", "application/json"}, {"csv", "text/csv"}};
 
-/* Whether the second of two formats is asked for, and the reply that a body of it will be.  A result never changes, so that format and version are its tag; one
- * of so many rows alone has these, too. */
+/* Whether the second of two formats is requested, and the reply without its body.  A result never changes, so its ETag is made
+ * of format and version; the ETag of a partial result also has its rows. */
 static bool second(const struct request *request, const struct format formats[2], const char *table, int rows,
                    struct reply *reply)
 {
@@ -298,7 +298,7 @@ static bool second(const struct request *request, const struct format formats[2]
 	return is;
 }
 
-/* Why the run of a study cannot be made: not now, or never, for its document is gone or damaged, or not for this version. */
+/* The reply when a run cannot be opened: temporarily, or because its document is missing, damaged or not for this version. */
 static struct reply unopened(struct request *request, const struct stored_run *opened, const char *error)
 {
 	if (opened->passing)
@@ -310,14 +310,14 @@ static struct reply unopened(struct request *request, const struct stored_run *o
 	return problem(API_CONFLICT, error);
 }
 
-/* The run of a study of which an answer is computed, which ends when nobody waits for that any more: what is replied then is
- * not sent.  Returns NULL, or why it cannot be made; closed by stored_run_close in either case. */
+/* Opens the run of a study to compute an answer from; it stops when the client no longer waits, and that reply is not sent.
+ * Returns NULL, or why it cannot be opened; call stored_run_close in either case. */
 static const char *answer_open(const struct request *request, struct stored_run *opened)
 {
 	return stored_run_open(request->server->store, request->id, 1, request->unwanted, opened);
 }
 
-/* The result of the rows that are stored whole; an unfinished study is looked at again after a time [s]. */
+/* The partial result of the completely stored rows; retry_after [s] is for a study without any. */
 static struct reply so_far(struct request *request, int retry_after, int *rows)
 {
 	struct stored_run opened;
@@ -368,8 +368,8 @@ static void tabulate(struct reply *reply, const struct reply *json, const char *
 	*reply = problem(API_CONFLICT, detail);
 }
 
-/* A result that is not there yet, or never will be, as that of the rows so far, if that is asked for and there is one, and how
- * many these are. */
+/* Replaces the refusal of a missing result by the partial result, if the request asks for it and there is one; `rows` are its
+ * rows, 0: not partial. */
 static struct reply or_so_far(struct request *request, struct reply json, int *rows)
 {
 	*rows = 0;
@@ -417,7 +417,7 @@ static struct reply results(struct request *request)
 	return reply;
 }
 
-/* Whether a finished study has samples, answered without its run, for clients that have them already. */
+/* Whether a finished study has samples, without opening its run: for clients that have them already. */
 static bool sampled(const struct request *request, bool ours)
 {
 	struct problems problems;
@@ -426,7 +426,7 @@ static bool sampled(const struct request *request, bool ours)
 	if (store_document(request->server->store, request->id, "request", &text, &length) != STORE_OK)
 		return false;
 	struct pound_study *study = records_study(request->server->store, text, length, &problems);
-	// histories are computed again, by any version
+	// any version can compute histories again
 	bool has = study && samples_exist(study) && (ours || !pound_study_sampled(study));
 	if (study)
 		study_free(study);
@@ -437,7 +437,7 @@ static bool sampled(const struct request *request, bool ours)
 static struct reply samples(struct request *request)
 {
 	static const struct format formats[] = {{"csv", "text/csv"}, {"npy", "application/octet-stream"}};
-	// a result says that all blocks are there; its start says the version and the rows, of a design that grew, too
+	// a stored result implies that all blocks are stored; its start has the version and the rows, also of a grown design
 	char head[RESULT_HEAD];
 	struct reply reply;
 	enum store_status found = store_start(request->server->store, request->id, "result", head, sizeof head);
@@ -485,7 +485,7 @@ static struct reply motions(struct request *request)
 	return reply;
 }
 
-/* The tag of what is drawn: of a version, and of so many rows while there are not all. */
+/* The ETag of a figure: the version, and the rows of a partial result. */
 static void tag(struct reply *reply, int rows)
 {
 	snprintf(reply->etag, sizeof reply->etag, rows ? "\"%s-%d\"" : "\"%s\"", POUND_VERSION, rows);
@@ -510,7 +510,7 @@ static struct reply figures(struct request *request)
 	return reply;
 }
 
-/* The history of the chosen signal as CSV, computed again; NULL: there is none, or it cannot be made, and perhaps why. */
+/* The history of the chosen signal as CSV, computed again; NULL: there is none, or it failed, with a reason if known. */
 static char *history(const struct request *request, size_t *length, const char **reason)
 {
 	struct stored_run opened;
@@ -549,7 +549,7 @@ static struct reply figure(struct request *request)
 	if (status != FIGURE_DRAWN)
 		return problem(faults[status], reason ? reason : drawn.detail);
 	struct reply reply = made("image/svg+xml", drawn.svg, drawn.length);
-	// its style is inside; by itself it may do nothing else
+	// the SVG has inline style; opened as a page of its own it may do nothing else
 	reply.policy = "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; sandbox";
 	tag(&reply, rows);
 	return reply;
@@ -641,7 +641,7 @@ PAGE(script)
 PAGE(icon)
 #undef PAGE
 
-/* Whether a request is for what is made of all blocks of a study, of a result read again, or for a long document. */
+/* Whether an answer is slow: made from all blocks of a study or by parsing its result, or a long document. */
 bool routes_slow(const struct request *request)
 {
 	size_t length = 0;
@@ -664,7 +664,7 @@ bool routes_slow(const struct request *request)
 	return strcmp(request->method, "HEAD") != 0 && length >= SPOOL_LONG;
 }
 
-/* Whether an answer depends on what is stored, and on nothing else. */
+/* Whether an answer depends on the store alone. */
 static bool is_of_store(const struct request *request)
 {
 	return !strcmp(api_operations[request->operation].method, "GET") &&
@@ -680,7 +680,7 @@ bool routes_kept(const struct request *request, struct reply *reply)
 
 /* Answers a request.
  *
- * Given    request   whose head and arguments are those of its operation, and whose body is read
+ * Given    request   with a head and arguments valid for its operation, and a complete body
  * Returns  value     the reply; its body is allocated
  * Test     service_routes: every_route_answers_only_its_methods
  */

@@ -6,7 +6,7 @@
 
 #include "server/store.h"
 
-/* A file for a body.
+/* Opens a file for a body.
  *
  * Returns  value   for spool_close; -1: the disk or the number of descriptors does not allow one now
  * Test     service_http: long_answers_wait_for_slow_readers_in_files_without_names

@@ -1,8 +1,8 @@
-/* The statements of the database, a name and a text each.  Included by server/store.c, before all else of it. */
+/* The prepared statements: a name and an SQL text each.  Included by server/store.c, before its functions. */
 // clang-format off
 enum statement {
 	STUDY, LIST, LIST_OF, DOCUMENT, LENGTH, BLOCKS, COUNT, REUSABLE, EXPIRED, EXPIRED_BLOCKS, RECORD, RECORDS_EXPIRED,
-	BEGIN, // the first of those that the writer alone has
+	BEGIN, // the first statement of the writer alone
 	COMMIT, ROLLBACK, KEYED, SAME, NEXT, SUBMIT, ADD, CANCEL, DELETE, CLAIM, KEEP, PROGRESS, PRUNE, SHED, RECOUNT, SPENT, FINISH, REQUEUE,
 	STOPPED, VAIN, POISON, REPLACE_RECORD, ADD_RECORD, NAME_RECORD, FORGET_RECORDS,
 	N_STATEMENTS
@@ -12,7 +12,7 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 
 #define NOW "CAST(round((julianday('now') - 2440587.5) * 86400000) AS INTEGER)"
 #define ISO_TIME(column) "strftime('%Y-%m-%dT%H:%M:%fZ', " column " / 1000.0, 'unixepoch'), "
-// place of a study, and what is left of the CPU time of those before it, when they are taken up in order
+// queue position of a study, and remaining CPU time of the studies before it, when they run in order
 #define QUEUE                                                                                             \
 	"iif(status = 'queued', (SELECT count(*) FROM study AS other WHERE other.status = 'queued' "          \
 	"AND other.id <= study.id), 0), "                                                                     \
@@ -22,18 +22,18 @@ _Static_assert((int)N_STATEMENTS <= (int)DATABASE_STATEMENTS_MAX, "a statement h
 	"SELECT id, status, kind, name, " ISO_TIME("created") ISO_TIME("started") ISO_TIME("finished")        \
 	"error, runs, iif(status = 'succeeded', runs, runs_done), cpu_s, cpu_s_estimated, " QUEUE "FROM study "
 #define QUEUED "SELECT id FROM study WHERE status = 'queued' "
-// what bytes are checked with: where they belong, and themselves; a block belongs to the version that made it, too
+// digests that bytes are checked with: of their place and the bytes; the place of a block includes its engine version
 #define DOCUMENT_DIGEST(study, name, content) "digest(" name " || ' ' || " study " || ' ', " content ")"
 #define BLOCK_DIGEST(study, number, content) \
 	"digest('" POUND_VERSION " ' || " study " || ' ' || " number " || ' ', " content ")"
 
-// what its blocks come to, as columns of their study
+// sums over the blocks of a study, as columns of the study
 #define BLOCK_SUMS(cpu_s) \
 	"(runs_done, cpu_s) = (SELECT coalesce(sum(runs), 0), " cpu_s " FROM block WHERE study = ?1)"
 
-// filters of a list, each NULL: any
+// filters of a list; NULL: any
 #define ALIKE " AND (?4 IS NULL OR instr(name, ?4) > 0) AND (?5 IS NULL OR hash = ?5) "
-// one that ended more than ?1 milliseconds ago
+// a study that ended more than ?1 milliseconds ago
 #define EXPIRY "SELECT id FROM study WHERE finished < " NOW " - ?1 "
 
 // a record that no study names, sent more than ?1 milliseconds ago
@@ -84,7 +84,7 @@ static const char *const statement_text[] = {
 	              "runs = iif(?3 IS NULL AND runs_done > 0, runs_done, runs) WHERE id = ?1 AND status = 'running'",
 	[REQUEUE]  = "UPDATE study SET status = 'queued', "
 	              "crashes = iif(attempt > attempt_kept, crashes + (id = ?1), 0) WHERE status = 'running'",
-	// one that was stopped in order has not been tried in vain
+	// an orderly stop does not count as a failed attempt
 	[STOPPED]  = "UPDATE study SET status = 'queued', attempt = max(attempt_kept, attempt - 1) WHERE status = 'running'",
 	[VAIN]     = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
 	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, and no part of it was done' "

@@ -4,7 +4,7 @@
  *    checkpoint.  (SQLite before 3.51.3 can damage a WAL database when one connection checkpoints while another commits.)
  * 2. A lock file keeps a second server away from the database (server/disk.c).
  * 3. synchronous=FULL: a COMMIT that returned survives a power cut.
- * 4. A prepared statement per question; a client's bytes are only ever bound.
+ * 4. Every query is a prepared statement; bytes of clients are only ever bound as values.
  *
  * server/database.c opens the connections. */
 #include "server/store.h"
@@ -26,10 +26,10 @@
 #include "server/log.h"
 
 enum {
-	// four threads that answer, two beside them, a worker and the watchdog may ask at once
+	// four threads that answer, two for slow answers, a worker and the watchdog may read at once
 	READERS = 8,
-	CHANGES = 1021,     /* a prime, so that ids fall everywhere */
-	PIECE = 256 * 1024, /* [bytes] of a document that is copied */
+	CHANGES = 1021,     /* a prime, so that ids use all counters */
+	PIECE = 256 * 1024, /* [bytes] of a document copied at a time */
 	DAY = 86400 * 1000, /* [ms] */
 };
 
@@ -39,13 +39,13 @@ enum {
 
 struct store {
 	struct disk disk;
-	struct database writer, readers[READERS]; /* readers have the statements before BEGIN */
-	atomic_uint changes[CHANGES];             /* of the studies whose ids have that remainder */
-	atomic_uint changes_all;                  /* of any */
+	struct database writer, readers[READERS]; /* readers prepare only the statements before BEGIN */
+	atomic_uint changes[CHANGES];             /* of the studies with id % CHANGES */
+	atomic_uint changes_all;                  /* of any study */
 };
 
-/* A statement with its values; types: i int64_t, d double, t text (NULL: null), b bytes and their size_t, all of which
- * must stay until it has ended. */
+/* Binds values to a statement; types: i int64_t, d double, t text (NULL: null), b bytes and their size_t.  Texts and bytes
+ * must stay valid until `ended`. */
 static sqlite3_stmt *bound(struct database *c, enum statement s, const char *types, ...)
 {
 	sqlite3_stmt *statement = c->statements[s];
@@ -66,7 +66,7 @@ static sqlite3_stmt *bound(struct database *c, enum statement s, const char *typ
 	return statement;
 }
 
-/* After the last step of a statement that changed n rows. */
+/* Resets a statement after its last step; n: rows it changed or returned. */
 static enum store_status ended(struct database *c, sqlite3_stmt *statement, int n)
 {
 	bool failed = sqlite3_reset(statement) != SQLITE_OK;
@@ -77,7 +77,7 @@ static enum store_status ended(struct database *c, sqlite3_stmt *statement, int 
 	return failed ? STORE_FAILED : n == 0 ? STORE_NONE : STORE_OK;
 }
 
-/* Runs a change, or a question to which the answer is one number (NULL: not wanted). */
+/* Runs a change, or a query whose result is one number (NULL: not wanted). */
 static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_t *number)
 {
 	int n = 0;
@@ -87,7 +87,7 @@ static enum store_status run(struct database *c, sqlite3_stmt *statement, int64_
 	return ended(c, statement, sqlite3_stmt_readonly(statement) ? n : sqlite3_changes(c->db));
 }
 
-/* Ends a transaction whose changes gave `status`, and returns its own.  A full disk may have rolled back already. */
+/* Commits or rolls back a transaction whose changes had `status`.  On a full disk SQLite may have rolled back already. */
 static enum store_status committed(struct database *c, enum store_status status)
 {
 	if (status == STORE_OK && run(c, bound(c, COMMIT, ""), NULL) == STORE_FAILED)
@@ -108,7 +108,7 @@ static enum store_status both(struct database *c, sqlite3_stmt *first, sqlite3_s
 	return committed(c, status);
 }
 
-/* Any connection that is free, its lock taken. */
+/* A free reading connection, locked. */
 static struct database *reader(struct store *store)
 {
 	for (int i = 0; i < READERS; i++)
@@ -130,8 +130,8 @@ static enum store_status released(struct database *c, enum store_status status)
 	return status;
 }
 
-/* The same after a change of a study: those who wait for one may look.  It is not reported before it is known that the file it
- * went into is the one that the next start will find. */
+/* The same for the writer after a change of a study, which wakes clients that wait for it.  A change is reported as done only if
+ * the database file is still the one at its path, which the next start will open. */
 static enum store_status changed(struct store *store, int64_t id, enum store_status status)
 {
 	pthread_mutex_unlock(&store->writer.lock);
@@ -144,7 +144,7 @@ static enum store_status changed(struct store *store, int64_t id, enum store_sta
 	return status;
 }
 
-/* A number that grows after every change of a study: who remembers it from before a look sees that another is due.
+/* A number that grows after every change of a study: compare with its value from before the last read.
  *
  * Given    id      of the study; 0: any
  * Returns  value   shared by about one in a thousand other studies
@@ -155,7 +155,7 @@ unsigned store_changes(struct store *store, int64_t id)
 	return atomic_load(id ? &store->changes[id % CHANGES] : &store->changes_all);
 }
 
-/* The writing connection goes last and leaves no WAL behind. */
+/* Closes the writing connection last, which removes the WAL. */
 static void let_go(struct store *store)
 {
 	for (int i = 0; i < READERS; i++)
@@ -165,7 +165,7 @@ static void let_go(struct store *store)
 	free(store);
 }
 
-/* Queues what is running again, as store_close does, unless the connection is in use for longer. */
+/* Queues running studies again, as store_close does, unless the writing connection stays in use for longer than wait_ms. */
 void store_stop(struct store *store, int wait_ms)
 {
 	for (; pthread_mutex_trylock(&store->writer.lock) != 0; wait_ms--)
@@ -174,14 +174,14 @@ void store_stop(struct store *store, int wait_ms)
 	released(&store->writer, run(&store->writer, bound(&store->writer, STOPPED, ""), NULL));
 }
 
-/* Closes a store, when nothing runs any more. */
+/* Closes a store that no thread uses any more. */
 void store_close(struct store *store)
 {
 	run(&store->writer, bound(&store->writer, STOPPED, ""), NULL);
 	let_go(store);
 }
 
-/* Whether there is room for new studies; what deleted ones have left counts, and a WAL that is only long is cut. */
+/* Whether there is space for new studies, including free pages of the database; truncates the WAL if space is short. */
 static bool roomy(struct store *store)
 {
 	int64_t reusable = 0;
@@ -195,11 +195,11 @@ static bool roomy(struct store *store)
 	return disk_roomy(&store->disk, reusable);
 }
 
-/* Opens a database, making it if there is none.  Studies that were running are queued again, but one that made the
- * server crash three times has failed, and so has one of which ten servers ended without having done a part.
+/* Opens a database, making it if there is none.  Studies that were running are queued again, except that one which
+ * crashed the server three times fails, as does one during which the server ended ten times without storing a block.
  *
- * Given    path    of the database file, or of a link to it; PATH-lock, PATH-ballast, PATH-wal and PATH-shm stand beside it
- * Returns  value   for store_close, NULL: in use by another server, not ours, or not to be opened; logged
+ * Given    path    of the database file, or of a link to it; PATH-lock, PATH-ballast, PATH-wal and PATH-shm are beside it
+ * Returns  value   for store_close, NULL: in use by another server, not of poundd, or not readable; logged
  * Test     unit_store: a_store_in_use_is_not_opened_again
  */
 struct store *store_open(const char *path)
@@ -224,7 +224,7 @@ struct store *store_open(const char *path)
 	     run(w, bound(w, POISON, ""), NULL) != STORE_FAILED &&
 	     run(w, bound(w, VAIN, ""), NULL) != STORE_FAILED;
 	if (!ok) {
-		// what was running is for the next start to queue, which may still have to count a crash
+		// running studies are left for the next start to queue, which may still have to count a crash
 		let_go(store);
 		return NULL;
 	}
@@ -233,8 +233,8 @@ struct store *store_open(const char *path)
 	return store;
 }
 
-/* The content of a row that starts with it and with whether it is what was stored: copied, for it may lie unaligned,
- * and a zero added. */
+/* Copies the content in column 0 of a row, whose column 1 says whether its digest is right; SQLite's bytes may be unaligned.
+ * Adds a zero. */
 static enum store_status checked(sqlite3_stmt *row, char **content, size_t *length)
 {
 	if (!sqlite3_column_int(row, 1))
@@ -249,7 +249,7 @@ static enum store_status checked(sqlite3_stmt *row, char **content, size_t *leng
 	return STORE_OK;
 }
 
-/* Lets go of a connection after a row was read, or found damaged. */
+/* Releases a connection after a row was read, or found damaged. */
 static enum store_status content_read(struct database *c, sqlite3_stmt *row, const char *place,
                                       enum store_status status)
 {
@@ -260,7 +260,7 @@ static enum store_status content_read(struct database *c, sqlite3_stmt *row, con
 	return released(c, status);
 }
 
-/* The content of the one row of a question, whose place the log names when it is damaged; lets go of the connection. */
+/* The content of the only row of a query, logged by its place if damaged; releases the connection. */
 static enum store_status content_of(struct database *c, sqlite3_stmt *row, const char *place, char **content,
                                     size_t *length)
 {
@@ -270,7 +270,7 @@ static enum store_status content_of(struct database *c, sqlite3_stmt *row, const
 	return content_read(c, row, place, status);
 }
 
-/* What was submitted with a key before; STORE_NONE: nothing, or there is no key. */
+/* The study submitted before with a key; STORE_NONE: no such study, or no key. */
 static enum store_status keyed(struct database *c, const char *key, const char *request, size_t length,
                                int64_t *id)
 {
@@ -281,8 +281,8 @@ static enum store_status keyed(struct database *c, const char *key, const char *
 	return status == STORE_OK ? STORE_REPEATED : status == STORE_NONE ? STORE_CLASH : status;
 }
 
-/* Whether one more study may be queued.  Under the lock of the one who writes: of those who submit at the same time each is counted
- * by the next. */
+/* Whether one more study may be queued.  Under the writer's lock, so that simultaneous submissions are counted one after the
+ * other. */
 static enum store_status room_of(struct database *c, const struct store_study *study)
 {
 	const struct {
@@ -309,12 +309,12 @@ static enum store_status room_of(struct database *c, const struct store_study *s
 /* Queues a new study; it is on the disk when this returns.
  *
  * Given    request   (length) bytes   as the client sent them
- * Returns  id        of the study, or of the one that has the key
- * Status   STORE_REPEATED these bytes were submitted with the key before: nothing new is stored
- *          STORE_CLASH    other bytes were
+ * Returns  id        of the study, or of the earlier study with the key
+ * Status   STORE_REPEATED the same bytes were submitted with the key before: nothing new is stored
+ *          STORE_CLASH    other bytes were submitted with the key before
  *          STORE_CROWDED, STORE_CLIENT_CROWDED: a limit of the study is reached
  *          STORE_FULL     the disk has no room for new studies
- *          STORE_UNRECORDED   a record that it names is not there any more
+ *          STORE_UNRECORDED   a record that it names is no longer stored
  *          STORE_FAILED   nothing is stored
  * Test     service_resume: accepted_studies_survive_sigkill, unit_store: no_more_are_queued_than_may_be
  */
@@ -366,14 +366,14 @@ static enum store_status studies(struct database *c, sqlite3_stmt *rows, store_s
 	return released(c, ended(c, rows, n));
 }
 
-/* Hands over one study.  The reader is called once, or not if there is none. */
+/* Passes one study to a reader, which is not called if there is no such study. */
 enum store_status store_study(struct store *store, int64_t id, store_study_reader *each, void *to)
 {
 	struct database *c = reader(store);
 	return studies(c, bound(c, STUDY, "i", id), each, to);
 }
 
-/* Hands over a page of studies, newest first.
+/* Passes a page of studies to a reader, newest first.
  *
  * Given    each     called with `to` and each study
  * Test     service_list: the_list_is_newest_first_and_pages_by_cursor,
@@ -404,7 +404,7 @@ enum store_status store_document(struct store *store, int64_t id, const char *na
 	return content_of(c, bound(c, DOCUMENT, "it", id, name), place, content, length);
 }
 
-/* How long a document is, without a look at its content. */
+/* The length of a document, without reading its content. */
 enum store_status store_length(struct store *store, int64_t id, const char *name, size_t *length)
 {
 	int64_t n = 0;
@@ -431,8 +431,7 @@ enum store_status store_start(struct store *store, int64_t id, const char *name,
 	return released(c, read ? STORE_OK : there || failed ? STORE_FAILED : STORE_NONE);
 }
 
-/* Copies a blob's bytes to a file, a piece at a time; false: the database does not give them, or the file does not take
- * them. */
+/* Copies a blob's bytes to a file in chunks, hashing them; false: reading the database or writing the file failed. */
 static bool pieces_copy(sqlite3_blob *blob, struct sha256_ctx *hash, int file)
 {
 	static _Thread_local char piece[PIECE];
@@ -502,13 +501,13 @@ enum store_status store_ready(struct store *store)
 	                                    : STORE_FULL;
 }
 
-/* A file for bytes that are not to stay in memory. */
+/* An unnamed temporary file for a long answer. */
 int store_spool(const struct store *store, size_t n)
 {
 	return disk_spool(&store->disk, n);
 }
 
-/* A change that frees room: on a full disk it has that of the ballast. */
+/* A change that frees space: on a full disk it may use the ballast file's space. */
 static enum store_status relieved(struct store *store, enum statement s, int64_t id)
 {
 	struct database *c = writer(store);
@@ -532,11 +531,11 @@ enum store_status store_delete(struct store *store, int64_t id)
 	return relieved(store, DELETE, id);
 }
 
-/* Deletes one study that ended too long ago, or else the blocks of one.  One at a time, so that no other change waits for long.
+/* Deletes one expired study, or else the blocks of one.  One at a time, so that no other change waits for long.
  *
  * Given    days          that an ended study is kept; 0: without limit
- *          days_blocks   that its blocks are kept, of which its samples are made; 0: as long as the study
- * Returns  value         whether there was one: call again
+ *          days_blocks   that its blocks, from which samples are made, are kept; 0: as long as the study
+ * Returns  value         true: deleted one, call again
  * Test     unit_store: what_ended_too_long_ago_is_deleted_and_nothing_else
  */
 bool store_expire(struct store *store, int days, int days_blocks)
@@ -563,12 +562,13 @@ bool store_expire(struct store *store, int days, int days_blocks)
 	return false;
 }
 
-/* Takes the oldest queued study, last those that were taken three times in vain; it is then running, the attempt counted.
+/* Claims the oldest queued study, after all others those whose last three attempts stored no block; it becomes running, and the
+ * attempt is counted.
  *
- * Given    memory_most   bytes   that it may take; no later one is taken in its place, so that it has its turn
- *          avoided       token whose studies are taken only when there are no others; "": none
+ * Given    memory_most   bytes   that it may need; no later study is claimed instead, so that it is not passed over
+ *          avoided       token whose studies are claimed only when there are no others; "": none
  * Returns  claimed       the study
- * Status   STORE_NONE    nothing is queued, or that takes more
+ * Status   STORE_NONE    nothing is queued, or the study needs more memory
  * Test     unit_store: a_study_of_another_token_is_claimed_before_an_older_one,
  *          service_estimates: two_studies_that_do_not_fit_together_run_one_after_the_other
  */
@@ -588,24 +588,24 @@ enum store_status store_claim(struct store *store, int64_t memory_most, const ch
 	return changed(store, status == STORE_OK ? claimed->id : 0, status);
 }
 
-/* Notes the time that a running study has taken, when reductions made it more than that of its blocks. */
+/* Stores the CPU time of a running study, when reductions have raised it above the sum of its blocks. */
 enum store_status store_spent(struct store *store, int64_t id, double cpu_s)
 {
 	struct database *c = writer(store);
 	return changed(store, id, run(c, bound(c, SPENT, "id", id, cpu_s), NULL));
 }
 
-/* Remembers, in a signal handler of a server that is about to crash, with which study it did. */
+/* Records, in the signal handler of a crashing server, the study during which it crashed. */
 void store_blame(const struct store *store, int64_t id)
 {
 	disk_blame(&store->disk, id);
 }
 
-/* Keeps finished blocks of running studies, all in one commit.
+/* Stores finished blocks of running studies, all in one transaction.
  *
  * Given    blocks   (n) pointers
  * Returns  blocks   `kept`: false for one whose study was canceled or deleted, which is not stored
- * Status   STORE_FAILED   none is kept
+ * Status   STORE_FAILED   none is stored
  * Test     unit_store: blocks_are_kept_together_and_only_while_their_studies_run
  */
 enum store_status store_keep(struct store *store, struct store_block *const blocks[], int n)
@@ -633,10 +633,10 @@ enum store_status store_keep(struct store *store, struct store_block *const bloc
 	return changed(store, n > 0 ? blocks[0]->study : 0, status);
 }
 
-/* Hands over the kept blocks, by number, as long as they are wanted, without damaged ones and those of another version.
+/* Passes the stored blocks to a reader, by number, until it returns false; leaves out damaged blocks and blocks of another version.
  *
- * Status   STORE_CORRUPT  one was, or more
- *          STORE_FAILED   the disk, or no memory: some may be missing
+ * Status   STORE_CORRUPT  at least one was left out
+ *          STORE_FAILED   disk error or out of memory: some may be missing
  */
 enum store_status store_blocks(struct store *store, int64_t id, store_block_reader *each, void *to)
 {
@@ -680,9 +680,9 @@ enum store_status store_prune(struct store *store, int64_t id)
 
 /* Ends a running study.
  *
- * Given    result   (length) bytes   what the client gets; NULL: it failed
+ * Given    result   (length) bytes   as the client gets it; NULL: it failed
  *          error    why it failed, a sentence; NULL: it did not
- *          cpu_s    that it took in all [s]
+ *          cpu_s    of the whole study [s]
  * Status   STORE_NONE   it is not running any more; nothing is stored
  * Test     unit_store: a_study_finishes_once
  */

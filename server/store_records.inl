@@ -1,13 +1,13 @@
-/* Files of recorded ground motions in the store.  Included by server/store.c, behind what it has of studies. */
+/* Files of recorded ground motions in the store.  Included by server/store.c, before store_submit. */
 
-enum { UNNAMED_MS = 3600 * 1000 /* that a record is kept which no study names */ };
+enum { UNNAMED_MS = 3600 * 1000 /* for which a record that no study names is kept */ };
 
-/* Keeps a file; it is on the disk when this returns.
+/* Stores a file; it is on the disk when this returns.
  *
  * Given    sha256    of content, hexadecimal
  *          content   (length) bytes
- * Status   STORE_REPEATED   it was there already
- *          STORE_FULL       the disk has no room for it
+ * Status   STORE_REPEATED   it was stored already
+ *          STORE_FULL       the disk has no space for it
  * Test     service_records: a_record_lives_while_a_study_names_it
  */
 enum store_status store_put_record(struct store *store, const char *sha256, const char *content,
@@ -26,7 +26,7 @@ enum store_status store_put_record(struct store *store, const char *sha256, cons
 /* Reads a file.
  *
  * Returns  content   (length) bytes, and a zero behind them; allocated when STORE_OK
- * Status   STORE_NONE      there is none of that SHA-256
+ * Status   STORE_NONE      no file has this SHA-256
  *          STORE_CORRUPT   these are not the bytes that were stored
  */
 enum store_status store_record(struct store *store, const char *sha256, char **content, size_t *length)
@@ -37,7 +37,7 @@ enum store_status store_record(struct store *store, const char *sha256, char **c
 	return content_of(c, bound(c, RECORD, "t", sha256), place, content, length);
 }
 
-/* Adds a study, its document and the records that it names, all or none. */
+/* Adds a study, its document and its references to records in one transaction. */
 static enum store_status study_add(struct database *c, const struct store_study *study, int64_t id,
                                    const char *request, size_t length)
 {
@@ -54,7 +54,7 @@ static enum store_status study_add(struct database *c, const struct store_study 
 	return committed(c, status == STORE_NONE ? STORE_UNRECORDED : status);
 }
 
-/* Deletes the records that no study has named for too long. */
+/* Deletes records that no study names and that were sent more than UNNAMED_MS ago. */
 static void records_expire(struct store *store)
 {
 	struct database *c = reader(store);

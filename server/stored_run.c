@@ -30,10 +30,10 @@ static bool restore(void *to, const struct store_block *block)
 	return goes_on;
 }
 
-/* Makes the run of a stored study, with the blocks that are stored; without some of these once it is stopped.
+/* Makes the run of a stored study and restores its stored blocks, until it is stopped.
  *
  * Given    id          of the study
- *          n_workers   that will run its blocks
+ *          n_workers   workers that will run its blocks
  * Returns  opened      closed by stored_run_close, even after a failure
  *          value       NULL, or why it failed
  * Memory   allocates
@@ -73,7 +73,7 @@ const char *stored_run_open(struct store *store, int64_t id, int n_workers, cons
 	return found == STORE_FAILED ? "the stored blocks could not be read" : NULL;
 }
 
-/* Blocks that are not stored, of the current rows. */
+/* The number of blocks of the current rows that are not stored. */
 int stored_run_left(const struct stored_run *opened)
 {
 	int n = 0;

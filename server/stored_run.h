@@ -1,4 +1,4 @@
-/* stored_run.h - a study's run with the blocks that are stored. */
+/* stored_run.h - the run of a stored study, with its stored blocks. */
 #ifndef STORED_RUN_H
 #define STORED_RUN_H
 
@@ -15,13 +15,13 @@ struct stored_run {
 	struct pound_study *study;
 	struct pound_run *run;
 	bool *stored;         /* (pound_run_blocks_most) */
-	bool passing;         /* it could not be opened for want of memory or by a fault of the disk */
-	bool leftovers;       /* there are blocks that cannot be used: damaged, or another version's */
-	double cpu_s, wall_s; /* spent on the stored ones [s] */
+	bool passing;         /* opening failed for lack of memory or a disk error: a retry may work */
+	bool leftovers;       /* some stored blocks cannot be used: damaged, or of another version */
+	double cpu_s, wall_s; /* spent on the stored blocks [s] */
 };
 
-/* NULL, or a sentence why it cannot be opened, and whether that may pass; to be closed in either case.  `stop` is the run's
- * flag to stop by. */
+/* NULL, or a sentence that says why it cannot be opened; see `passing`.  Close it in either case.  `stop` is the stop flag of
+ * the run. */
 const char *stored_run_open(struct store *store, int64_t id, int n_workers, const atomic_bool *stop,
                             struct stored_run *opened);
 int stored_run_left(const struct stored_run *opened); /* blocks of the current rows that are not stored */

@@ -1,5 +1,5 @@
-/* Bearer tokens.  What a client sends is hashed and compared with every token's hash, all bytes of all of them, so that
- * the time it takes reveals nothing of how near it was. */
+/* Bearer tokens.  A token sent by a client is hashed and compared with all bytes of every token's hash, so that the time
+ * reveals nothing about the valid tokens. */
 #include "server/token.h"
 
 #include <errno.h>
@@ -32,7 +32,7 @@ static void hash(const char *token, size_t n, uint8_t sha256[SHA256_DIGEST_SIZE]
 	sha256_digest(&context, SHA256_DIGEST_SIZE, sha256);
 }
 
-/* Takes the tokens of a file; NULL, or why it cannot. */
+/* Reads the tokens of a file; NULL, or why it cannot. */
 static const char *take(struct tokens *tokens, FILE *file)
 {
 	char line[512];
@@ -63,8 +63,8 @@ static const char *take(struct tokens *tokens, FILE *file)
 
 /* Reads a file of tokens.
  *
- * Given    file    of mode 0600 or less; one token a line, 32 characters or more, # starts a remark
- * Returns  value   for free; NULL: it cannot be used, logged
+ * Given    file    of mode 0600 or less; one token per line, 32 characters or more, # starts a comment
+ * Returns  value   release by free; NULL: the file cannot be used, logged
  * Test     unit_token: a_file_that_others_may_read_is_refused
  */
 struct tokens *tokens_open(const char *file)
@@ -81,7 +81,7 @@ struct tokens *tokens_open(const char *file)
 	return NULL;
 }
 
-/* Which token an Authorization header has.
+/* The name of the valid token in an Authorization header.
  *
  * Test     unit_token: a_token_is_known_to_its_last_character
  */

@@ -1,4 +1,4 @@
-/* token.h - who may use the server: bearer tokens of a file, kept as their SHA-256.  Constant after start; any thread. */
+/* token.h - authentication of clients: bearer tokens of a file, kept as their SHA-256.  Constant after start; any thread. */
 #ifndef TOKEN_H
 #define TOKEN_H
 
@@ -6,11 +6,12 @@ enum { TOKEN_NAME_SIZE = 17 };
 
 struct tokens;
 
-/* A token a line, # starts a remark; for free.  NULL: it cannot be read, others can, or a token is short; logged. */
+/* One token per line, # starts a comment; release by free.  NULL: the file cannot be read, is accessible to other users, or has a
+ * token that is too short; logged. */
 struct tokens *tokens_open(const char *file);
 
-/* The one that an Authorization header has (NULL: there is no such header), as a name that does not give it away:
- * the first 16 hexadecimal digits of its SHA-256.  NULL: none of them. */
+/* The valid token in an Authorization header (NULL: no such header), as a name that does not reveal the token: the first
+ * 16 hexadecimal digits of its SHA-256.  NULL: no valid token. */
 const char *tokens_name(const struct tokens *tokens, const char *authorization);
 
 #endif

@@ -1,23 +1,23 @@
-/* Workers and the studies they run.
+/* Worker threads and the studies they run.
  *
  *   worker 0  | claim | open | block 0 | block 2 | block 3      | reduce 0 | finish |
  *   worker 1  | wait         | block 1 | block 4 | block 5 | ...| reduce 1 | claim the next study ...
  *   committer                          | commit 0 1   | commit 4 2 5 3 |
  *
- * 1. While fewer than OPEN_MAX studies are open, a worker claims a queued one: the oldest, but of another token than the one
- *    with the most open studies, if there is one.
- * 2. A worker takes the next step of one of the open studies: a block, or when all blocks are stored a reduction.  It is the
- *    study with the least CPU time so far: first among tokens, by the sum over their open studies, then among the studies of
- *    that token.  So short studies end soon behind long ones.
- * 3. One thread commits all finished blocks that wait, together; a block counts after its commit.
- * 4. Who ends the last reduction asks whether the design grows; if so there are more blocks, and reductions again.
- * 5. Who ends the last step of a study turns its result into bytes and stores them.
- * 6. With --launcher worker groups in other processes take blocks, too, by the same rule (groups.inl); their values are
- *    handed to the committer as those of workers are.
- * 7. A study that runs for longer than it may is ended by a thread that waits for that.
+ * 1. While fewer than OPEN_MAX studies are open, a worker claims a queued one: the oldest of the tokens other than the one
+ *    with the most open studies, else the oldest.
+ * 2. A worker takes the next step of one of the open studies: a block, or when all blocks are stored a reduction.  It
+ *    chooses the token with the least CPU time, summed over its open studies, and of this token the study with the least
+ *    CPU time.  So short studies end soon even if queued after long ones.
+ * 3. The committer thread commits all waiting finished blocks in one transaction; a block counts after its commit.
+ * 4. The worker that ends the last reduction asks whether the design grows; if so, more blocks and reductions follow.
+ * 5. The worker that ends the last step of a study serializes and stores its result.
+ * 6. With --launcher or --worker-listen, worker groups in other processes take blocks by the same rule (groups.inl); their
+ *    values go to the committer like the values of workers.
+ * 7. The watch thread ends a study that runs for longer than the limit.
  *
- * Cancelling and deleting happen in the store; here they only save time, for a study that is not running in the
- * store takes no more blocks and no result. */
+ * The store decides about cancelling and deleting; here they only save time: for a study that is not running, the store
+ * accepts no more blocks and no result. */
 #include "server/workers.h"
 #include "server/stored_run.h"
 
@@ -41,36 +41,36 @@
 
 enum {
 	WORKER_NICENESS = 10, /* requests are answered first */
-	PATIENCE = 1,         /* [s] between two tries to get memory or to store something */
-	MEMORY_TRIES = 30,    /* before a study fails for want of memory */
+	PATIENCE = 1,         /* [s] between two attempts to get memory or to store something */
+	MEMORY_TRIES = 30,    /* before a study fails for lack of memory */
 	OPEN_MAX = 4,         /* studies whose steps are taken in turn */
-	WAITING_MAX = 256, /* finished blocks that wait for their commit, before their workers wait with them */
+	WAITING_MAX = 256,    /* finished blocks that may wait for a commit; at this limit workers wait */
 };
 
-static const double STOP_MAX = 0.3;  /* [s] for what workers are at, which is stopped, to end */
-static const double LATE_LOOK = 0.5; /* [s] between two looks whether a worker group is late with a block */
+static const double STOP_MAX = 0.3;  /* [s] for workers to exit after the stop flag is set */
+static const double LATE_LOOK = 0.5; /* [s] between two checks whether a worker group is late with a block */
 
 struct job {
 	TAILQ_ENTRY(job) others;
 	int64_t id;
-	char client[STORE_CLIENT_SIZE]; /* name of its token, "": there are none */
+	char client[STORE_CLIENT_SIZE]; /* name of its token, "": none */
 	bool opened;
 	struct stored_run of;
 	struct assignment blocks;
 	bool movable;                   /* worker groups may run its blocks */
-	struct coordinator_study known; /* to them */
-	int n_out;                      /* blocks that they have */
+	struct coordinator_study known; /* as worker groups know it */
+	int n_out;                      /* blocks assigned to worker groups */
 	int reduction;                  /* the next to assign */
 	int n_reductions, reductions_left;
-	int n_inside;      /* workers in one of its steps, and finished blocks that are not committed yet */
-	bool ended;        /* gives no more steps, ... */
-	atomic_bool stop;  /* ... and those that are taken stop soon */
-	bool finished;     /* its end is stored, or is not to be */
-	const char *error; /* why it failed, NULL if it did not */
+	int n_inside;                  /* workers in one of its steps, plus finished blocks not yet committed */
+	bool ended;                    /* no more of its steps are taken, ... */
+	atomic_bool stop;              /* ... and steps under way stop soon */
+	bool finished;                 /* its end is stored, or need not be */
+	const char *error;             /* why it failed, NULL if it did not */
 	double cpu_s, cpu_s_estimated; /* [s] */
-	bool over;                     /* it is known to have taken much longer than estimated */
+	bool over;                     /* the store knows that it took much longer than estimated */
 	int64_t memory;                /* estimated [bytes] */
-	double started;                /* [s] monotonic, as if all its sessions were this one */
+	double started;                /* [s] monotonic, less the time it ran under earlier servers */
 };
 
 /* A finished block; its values are in its run. */
@@ -84,20 +84,20 @@ struct work {
 	struct coordinator *coordinator; /* of worker groups, NULL: there are none */
 	pthread_mutex_t lock;            /* of all below */
 	pthread_cond_t changed;
-	pthread_cond_t waits; /* for the committer: a block does, or nothing will any more */
+	pthread_cond_t waits; /* wakes the committer: a block waits, or the workers have exited */
 	struct finished waiting[WAITING_MAX], committing[WAITING_MAX];
 	int n_waiting;
 	TAILQ_HEAD(, job) jobs; /* oldest first */
 	bool queued;            /* the store may hold a queued study */
-	bool claiming;          /* a worker is about to bring the next study */
+	bool claiming;          /* a worker is claiming the next study */
 	bool stopping;
-	bool drained;        /* the workers have ended */
-	double time_max;     /* that a study may run [s], */
-	double cpu_max;      /* ... and of CPU time, by its estimate [s] */
-	int64_t memory_left; /* of what studies may take at a time [bytes] */
-	bool watched;        /* there is ... */
-	pthread_t watch;     /* ... a thread that sees to that */
-	bool commits;        /* there is ... */
+	bool drained;        /* the workers have exited */
+	double time_max;     /* limit of the time a study runs [s], ... */
+	double cpu_max;      /* ... and of its estimated CPU time [s] */
+	int64_t memory_left; /* of the limit for all running studies [bytes] */
+	bool watched;        /* was started: ... */
+	pthread_t watch;     /* ... the thread that enforces time_max */
+	bool commits;        /* committer was started */
 	pthread_t committer;
 	uint64_t n_opened;
 	int n_started;
@@ -112,14 +112,14 @@ static double seconds(clockid_t clock)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* A time of the monotonic clock [s] as functions of the system have it. */
+/* A time [s] as struct timespec. */
 static struct timespec at(double time)
 {
 	const double whole = floor(time);
 	return (struct timespec){.tv_sec = (time_t)whole, .tv_nsec = (long)(1e9 * (time - whole))};
 }
 
-/* No more steps of this study; those that run stop soon. */
+/* Ends a study: no more steps of it are taken, steps under way stop soon. */
 static void end(struct job *job, const char *error)
 {
 	if (!job->error && !job->ended)
@@ -128,8 +128,8 @@ static void end(struct job *job, const char *error)
 	job->stop = true;
 }
 
-/* Waits when there is no memory, or the disk does not take what there is to store; false: the study (NULL: any) or the server
- * stops, so do not try again. */
+/* Waits before another attempt to get memory or to store something; false: do not try again, for the study (NULL: none) or the
+ * server stops. */
 static bool patient(struct work *work, const struct job *job)
 {
 	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + PATIENCE);
@@ -144,7 +144,7 @@ static bool patient(struct work *work, const struct job *job)
 
 static void finish(struct work *work, struct job *job)
 {
-	// the job's own may be looked at meanwhile
+	// a copy: job->error may be read by other threads meanwhile
 	const char *error = job->error;
 	size_t length = 0;
 	char *result = NULL;
@@ -174,12 +174,12 @@ static void drop(struct work *work, struct job *job)
 	assignment_free(&job->blocks);
 	stored_run_close(&job->of);
 	work->memory_left += job->memory;
-	work->queued = true; // the next may have waited for that
+	work->queued = true; // the next study may have waited for this memory
 	pthread_cond_broadcast(&work->changed);
 	free(job);
 }
 
-/* What is to do when a worker has left a study, or it was ended: under the lock, which finishing lets go. */
+/* Finishes a study if it is complete or ended and no worker is in it; under the lock, which is released meanwhile. */
 static void finish_if_complete(struct work *work, struct job *job)
 {
 	if (job->n_inside || (!job->ended && (job->reductions_left || stored_run_left(&job->of))))
@@ -193,14 +193,14 @@ static void finish_if_complete(struct work *work, struct job *job)
 		job->n_inside = 0;
 	}
 	job->finished = true;
-	// a block that also ran elsewhere may still be out: the groups are to give it back
+	// worker groups may still have a block that was also run elsewhere: have them return it
 	if (job->n_out > 0)
 		coordinator_wake(work->coordinator);
 	else
 		drop(work, job);
 }
 
-/* Hands a finished block to the committer; waits while too many wait.  Under the lock. */
+/* Passes a finished block to the committer; blocks while too many wait.  Under the lock. */
 static void hand_over(struct work *work, struct job *job, int block, double cpu_s)
 {
 	while (work->n_waiting == WAITING_MAX && !work->stopping && !job->stop)
@@ -222,7 +222,7 @@ static void hand_over(struct work *work, struct job *job, int block, double cpu_
 	pthread_cond_signal(&work->waits);
 }
 
-/* Commits what waits, in one transaction; the lock is free meanwhile. */
+/* Commits the waiting blocks in one transaction; the lock is released meanwhile. */
 static void commit_waiting(struct work *work)
 {
 	struct finished *done = work->committing;
@@ -264,13 +264,13 @@ static void *commit(void *of)
 	return NULL;
 }
 
-/* What a crash is due to: the study this thread is at, and where that is noted. */
+/* For the crash handler: the study that this thread works on, and the store that records it. */
 static _Thread_local volatile int64_t study_here;
 static const struct store *crash_store;
 
 static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-/* Notes the study; then the signal does what it does without this. */
+/* Records the study; then the default action of the signal follows. */
 static void crash(int signal)
 {
 	store_blame(crash_store, study_here);
@@ -287,10 +287,10 @@ static void watch_crashes(const struct store *store)
 
 struct step {
 	struct job *job;
-	int block, reduction; /* one of them, the other is -1 */
+	int block, reduction; /* one of the two; the other is -1 */
 };
 
-/* Who takes a step: a thread of this process, or a worker group and the studies that it cannot run. */
+/* The taker of a step: a thread of this process, or a worker group with the studies that it cannot run. */
 struct taker {
 	int number;
 	const uint64_t *refused; /* (n_refused) */
@@ -306,7 +306,7 @@ static bool suits(const struct job *job, const struct taker *taker)
 	return may;
 }
 
-/* The next step of a study, not taken yet; false: it has none to give now. */
+/* The next step of a study, without taking it; false: it has none now. */
 static bool next_step(struct job *job, const struct taker *taker, struct step *step)
 {
 	if (!job->opened || job->ended || !suits(job, taker))
@@ -323,7 +323,7 @@ static bool next_step(struct job *job, const struct taker *taker, struct step *s
 	return true;
 }
 
-/* CPU time of the open studies of a study's token [s]. */
+/* CPU time of all open studies with the same token as a study [s]. */
 static double client_cpu(const struct work *work, const struct job *job)
 {
 	double sum = 0;
@@ -334,7 +334,7 @@ static double client_cpu(const struct work *work, const struct job *job)
 	return sum;
 }
 
-/* Takes the next step, of the study whose turn it is.
+/* Takes the next step, of the study that rule 2 chooses.
  *
  * Test     service_queue: short_studies_end_soon_behind_a_long_one
  */
@@ -364,8 +364,8 @@ static bool take(struct work *work, const struct taker *taker, struct step *step
 	return true;
 }
 
-/* Lets the store know when a study has taken much longer than estimated: blocks do by themselves, reductions do not.  Ends one that
- * has taken much longer than any may.  Under the lock, which is free meanwhile.
+/* Stores the CPU time of a study that takes much longer than estimated: committed blocks update it, reductions do not.  Ends a study
+ * that takes much longer than the limit.  Under the lock, which is released meanwhile.
  *
  * Test     service_queue: a_study_that_takes_far_more_than_the_cpu_limit_has_failed
  */
@@ -382,7 +382,7 @@ static void note_over(struct work *work, struct job *job)
 	pthread_mutex_lock(&work->lock);
 }
 
-/* Runs a step; the lock is free meanwhile. */
+/* Runs a step; the lock is released meanwhile. */
 static void perform(struct work *work, const struct step *step, int worker)
 {
 	struct job *job = step->job;
@@ -417,7 +417,7 @@ static void perform(struct work *work, const struct step *step, int worker)
 	pthread_cond_broadcast(&work->changed);
 }
 
-/* Makes the run of a claimed study, waiting for memory or the disk; the lock is free meanwhile. */
+/* Opens the run of a claimed study, waiting for memory or the disk; the lock is released meanwhile. */
 static void open_run(struct work *work, struct job *job)
 {
 	struct stored_run opened;
@@ -433,7 +433,7 @@ static void open_run(struct work *work, struct job *job)
 	for (int block = 0; !error && block < job->blocks.n; block++)
 		if (opened.stored[block])
 			assignment_restore(&job->blocks, block);
-	// they would count as done; where that fails they still do, until they are run again
+	// unusable blocks would count as done; if deleting them fails they do, until they are run again
 	if (!error && opened.leftovers)
 		store_prune(work->store, job->id);
 	pthread_mutex_lock(&work->lock);
@@ -481,16 +481,16 @@ static const char *busiest(const struct work *work)
 	return client;
 }
 
-/* Brings a queued study; the lock is free meanwhile. */
+/* Claims and opens a queued study; the lock is released meanwhile. */
 static void claim(struct work *work)
 {
 	struct job *job = calloc(1, sizeof *job);
 	char avoided[STORE_CLIENT_SIZE];
 	snprintf(avoided, sizeof avoided, "%s", busiest(work));
 	work->claiming = true;
-	// before the question, so that a study queued during it is not missed
+	// before the query, so that a study queued during it is not missed
 	work->queued = false;
-	// one that alone takes more was accepted under another limit, and has it all
+	// a study that needs more than the limit was accepted under another limit, and runs alone
 	const int64_t memory = TAILQ_EMPTY(&work->jobs) ? INT64_MAX : work->memory_left;
 	struct store_claimed claimed = {0};
 	pthread_mutex_unlock(&work->lock);
@@ -516,7 +516,7 @@ static void claim(struct work *work)
 	pthread_cond_broadcast(&work->changed);
 }
 
-/* Waits for a change; no one signals that a block of a worker group is late. */
+/* Waits for a change; with a timeout if there are worker groups, because a late block is not signalled. */
 static void wait_changed(struct work *work)
 {
 	const struct timespec until = at(seconds(CLOCK_MONOTONIC) + LATE_LOOK);
@@ -548,9 +548,9 @@ static void *worker(void *of)
 
 #include "server/groups.inl"
 
-/* Ends the studies that have run for as long as they may; under the lock.
+/* Ends the studies that have reached the time limit; under the lock.
  *
- * Returns  value   when the next of the others will have [s] monotonic
+ * Returns  value   when the next study will reach it [s] monotonic
  */
 static double end_late(struct work *work)
 {
@@ -562,7 +562,7 @@ static double end_late(struct work *work)
 			next = fmin(next, until);
 		if (late)
 			end(job, "timeout: it ran for longer than the server's --time-max");
-		// settling lets the lock go, so the list may be another
+		// finish_if_complete releases the lock, so the list may have changed
 		if (late && job->n_inside == 0) {
 			finish_if_complete(work, job);
 			job = TAILQ_FIRST(&work->jobs);
@@ -572,7 +572,7 @@ static double end_late(struct work *work)
 	return next;
 }
 
-/* A thread of its own, for all workers may be inside of steps that do not end.
+/* In a thread of its own, because all workers may be in steps that do not end.
  *
  * Test     service_queue: a_study_that_runs_for_too_long_has_failed
  */
@@ -588,12 +588,12 @@ static void *watch(void *of)
 	return NULL;
 }
 
-/* Starts the workers, on what the store has queued.
+/* Starts the workers, which run the studies queued in the store.
  *
  * Given    n_workers   >= 1
- *          time_max    that a study may run [s]
- *          cpu_max     of CPU time that it is estimated at, at most [s]; one that takes three times that has failed
- *          memory_max  that the studies which run at a time may take by their estimates [bytes]
+ *          time_max    limit of the time a study runs [s]
+ *          cpu_max     limit of its estimated CPU time [s]; a study that takes three times as much fails
+ *          memory_max  limit of the estimated memory of all running studies together [bytes]
  *          launch      of worker groups
  * Returns  value       for work_stop; NULL: no memory, or no threads
  */
@@ -663,8 +663,8 @@ void work_drop(struct work *work, int64_t id)
 
 /* Stops the workers; studies that were running continue at the next start.
  *
- * Returns  value   false: a worker is at something that cannot be stopped, such as bytes on their way to a slow disk, and
- *                  nothing of work and its store may be given up but by the end of the program
+ * Returns  value   false: a worker is in an operation that cannot be interrupted, such as a write to a slow disk, so work
+ *                  and its store must not be freed before the program exits
  * Test     service_stop: it_ends_soon_whatever_runs_and_so_does_a_cancelled_study
  */
 bool work_stop(struct work *work)
@@ -677,7 +677,7 @@ bool work_stop(struct work *work)
 	pthread_cond_broadcast(&work->changed);
 	pthread_mutex_unlock(&work->lock);
 	groups_stop(work);
-	// by the wall's clock, as thread sanitizers know no other join; one that is set back meanwhile is left to the alarm
+	// CLOCK_REALTIME, because thread sanitizers support no other timed join; if it is set back, the alarm ends the wait
 	const struct timespec until = at(seconds(CLOCK_REALTIME) + STOP_MAX);
 	for (int w = 0; w < work->n_workers; w++)
 		if (pthread_timedjoin_np(work->workers[w], NULL, &until) != 0)

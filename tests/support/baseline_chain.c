@@ -1,5 +1,5 @@
 /* baseline_chain.c - central differences with a fixed step for a row of shear buildings: forces of all stories and contacts, then
- * the next displacements.  Dashpots see the velocity half a step ago. */
+ * the next displacements.  Dashpots use the velocity half a step earlier. */
 #include "tests/support/baseline_chain.h"
 
 #include <assert.h>
@@ -34,7 +34,7 @@ static void loop_start(struct loop *x, const struct pound_chain_task *task, doub
 	}
 }
 
-/* Forces of links that touch, added to those of floors. */
+/* Adds the forces of links in contact to the forces on floors. */
 static void links_push(const struct pound_chain_task *task, struct loop *x, double h)
 {
 	for (int j = 0; j < task->n_links; j++) {

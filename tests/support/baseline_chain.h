@@ -1,5 +1,5 @@
-/* baseline_chain.h - rows of shear buildings by the plain loop everyone writes first: what the speed of chains is measured
- * against.
+/* baseline_chain.h - rows of shear buildings by a plain time-stepping loop: the baseline for the speed of
+ * chains.
  *
  * Never linked into the product.  SI units; calls may run in any thread. */
 #ifndef BASELINE_CHAIN_H

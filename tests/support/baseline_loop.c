@@ -1,6 +1,6 @@
-/* baseline_loop.c - central differences with a fixed step, one simulation at a time, at two levels of care:
+/* baseline_loop.c - central differences with a fixed step, one simulation at a time, in two versions:
  *
- * 1. plain: the force of every spring and dashpot at each step, as it is written first;
+ * 1. plain: the force of every spring and dashpot computed at each step;
  * 2. tuned: all of it multiplied out before the loop into 2 x 2 products without contact and in contact, which is as fast
  *    as one simulation at a time gets. */
 #include "tests/support/baseline_loop.h"

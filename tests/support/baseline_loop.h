@@ -1,5 +1,5 @@
-/* baseline_loop.h - two linear oscillators that pound, by the plain loop everyone writes first: what the engine's speed is
- * measured against.
+/* baseline_loop.h - two linear oscillators that pound, by a plain time-stepping loop: the baseline for the engine's
+ * speed.
  *
  * Never linked into the product.  SI units; calls may run in any thread. */
 #ifndef BASELINE_LOOP_H

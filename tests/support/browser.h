@@ -1,6 +1,6 @@
-/* browser.h - Chromium as a user meets it, spoken to over its debugging pipe: JSON messages that end with a zero.
+/* browser.h - Chromium, controlled through its debugging pipe by JSON messages that end with a zero.
  *
- * What goes wrong in here fails the test. */
+ * Errors in these functions fail the test. */
 #ifndef BROWSER_H
 #define BROWSER_H
 
@@ -8,14 +8,14 @@
 
 struct browser;
 
-bool browser_there(void); /* there is one to be started */
+bool browser_there(void); /* a browser is installed */
 
 struct browser *browser_new(const char *folder, bool dark, int width, int height);
 void browser_free(struct browser *browser);
 
 void browser_go(struct browser *browser, const char *url);
 
-/* The value of an expression as a text, for free; a promise is waited for. */
+/* The value of an expression as a text, for free; a promise is awaited. */
 char *browser_text(struct browser *browser, const char *expression);
 /* Waits until an expression is true, 20 s at most. */
 void browser_wait(struct browser *browser, const char *expression);
@@ -28,7 +28,7 @@ void browser_type(struct browser *browser, const char *text);
 /* Whether the accessibility tree has an image of that name. */
 bool browser_has_image(struct browser *browser, const char *name);
 
-/* Exceptions, violations of the policy and errors since the start; those of the network, which a test may make, aside. */
+/* Exceptions, Content-Security-Policy violations and errors since the start, except network errors, which a test may cause. */
 int browser_faults(const struct browser *browser);
 const char *browser_fault(const struct browser *browser); /* the last */
 

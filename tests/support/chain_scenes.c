@@ -1,4 +1,4 @@
-/* chain_scenes.c - rows of shear buildings as chains: the model of buildings.md 1 written out once more, for tests. */
+/* chain_scenes.c - rows of shear buildings as chains: an independent implementation of the model of buildings.md 1, for tests. */
 #include "tests/support/chain_scenes.h"
 
 #include <assert.h>

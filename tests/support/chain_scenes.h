@@ -1,6 +1,6 @@
 /* chain_scenes.h - rows of shear buildings as chains, for tests of the engine without documents.
  *
- * SI units.  A row owns all that its task points at, so it stays where it is. */
+ * SI units.  A row owns the data that its task points to, so it must not be moved. */
 #ifndef CHAIN_SCENES_H
 #define CHAIN_SCENES_H
 

@@ -5,7 +5,7 @@
 
 const double findings_f1[FREQUENCIES] = {0.5, 1, 2, 3, 4, 5};
 
-/* Where the paper gives no measure for a word, this page does: */
+/* Measures for words of the paper that it does not quantify: */
 static const double GENERAL = 0.75;     /* "in general, with a few exceptions": of the cases */
 static const double ALL = 1.0;          /* "in all cases" */
 static const double NARROW = 0.1;       /* "narrow": half of an interval */

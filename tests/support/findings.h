@@ -1,8 +1,8 @@
-/* findings.h - the findings of the paper on its sensitivity study, and whether indices bear them out.
+/* findings.h - the findings of the paper on its sensitivity study, and whether indices confirm them.
  *
- * A finding is judged case by case, a case being an oscillator law and a frequency f_1.  What it says of a case is
- * decided by 95 % intervals: it holds if the intervals lie apart in the order that it says, fails if they lie apart in
- * another order, and is undecided if they overlap or there is none. */
+ * A finding is judged case by case, a case being an oscillator law and a frequency f_1.  A case is decided by 95 %
+ * intervals: the finding holds if the intervals are disjoint in the stated order, fails if they are disjoint in another
+ * order, and is undecided if they overlap or there is no interval. */
 #ifndef FINDINGS_H
 #define FINDINGS_H
 
@@ -37,7 +37,7 @@ struct finding {
 	enum order order;
 	enum outcome (*judge)(const struct evidence *evidence, const struct finding *finding, int law, int f);
 	int laws[2], frequencies[2]; /* the cases: first and last */
-	double share;                /* of the cases in which it must hold: 1 if the paper says "all" */
+	double share;                /* fraction of the cases in which it must hold: 1 if the paper says "all" */
 };
 
 extern const struct finding findings[];

@@ -1,4 +1,4 @@
-/* groups.h - worker groups as tests see them: processes that their launchers note in a file, blocks in a checkpoint. */
+/* groups.h - observes worker groups in tests: process ids that their launchers write to a file, blocks in a checkpoint. */
 #ifndef GROUPS_H
 #define GROUPS_H
 
@@ -14,12 +14,12 @@ int groups_pids(const char *file, pid_t pids[GROUPS_PIDS_MAX]);
 /* Waits until a file lists n processes, which fails the test after a minute. */
 void groups_wait(const char *file, int n, pid_t pids[GROUPS_PIDS_MAX]);
 bool groups_is_gone(pid_t pid);
-/* Waits until none of them is there, which fails the test after limit_ms; how long that took [s]. */
+/* Waits until all these processes have exited, at most limit_ms, else the test fails; returns the time it took [s]. */
 double groups_gone(const char *file, int limit_ms);
-int groups_port(void); /* a port of loopback that nobody listens on */
+int groups_port(void); /* a free port of loopback */
 /* Blocks that workers ran, as `pound run` reports. */
 int groups_blocks(const char *err);
-/* Records of a checkpoint: how many blocks have one, and how many have more. */
+/* Records of a checkpoint: numbers of blocks with one record and with more. */
 void groups_records(const char *checkpoint, int *n_once, int *n_more);
 
 #endif

@@ -1,7 +1,7 @@
-/* host_pauses.h - when the machine itself did nothing: a virtual one whose processors the host has taken.
+/* host_pauses.h - times at which a virtual machine was paused because the host used its processors.
  *
- * A thread on each processor, before all others where it may (SCHED_FIFO), wakes every two milliseconds; when it was not
- * woken, nobody was. */
+ * A thread on each processor, if permitted with real-time priority (SCHED_FIFO), wakes every two milliseconds; when it was not
+ * woken, no thread was. */
 #ifndef HOST_PAUSES_H
 #define HOST_PAUSES_H
 
@@ -10,10 +10,10 @@
 void host_pauses_start(void);
 void host_pauses_stop(void);
 
-/* Whether a processor was away at some time from `from` to `to` [s of the wall clock], or shortly before: as much later as
- * it was away, what had piled up meanwhile is counted to it. */
+/* Whether a processor was paused at some time from `from` to `to` [s of the wall clock], or shortly before: each pause counts
+ * for twice its length, because of the work that piled up. */
 bool host_pauses_between(double from, double to);
 
-double host_pauses_share(void); /* part of the time for which a processor was away, after host_pauses_stop */
+double host_pauses_share(void); /* fraction of the time that a processor was paused, after host_pauses_stop */
 
 #endif

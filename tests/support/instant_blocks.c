@@ -1,5 +1,5 @@
-/* Linked into a worker in the place of pound_run_block: a block takes POUND_BLOCK_US [us] without a processor, and its values are
- * zeros.  What is left is what it costs to assign blocks, to send their values and to store them. */
+/* Linked into a worker in place of pound_run_block: a block sleeps for POUND_BLOCK_US [us], and its values are zeros.  The
+ * remaining time is the cost of assigning blocks, sending their values and storing them. */
 #include <stdlib.h>
 #include <unistd.h>
 

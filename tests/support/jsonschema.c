@@ -1,5 +1,5 @@
-/* JSON Schema as OpenAPI 3.0 has it: type, nullable, enum, ranges, lengths, pattern, items, properties, required,
- * additionalProperties, allOf, anyOf, oneOf, $ref.  Written from the specification, knows nothing of our schemas. */
+/* The JSON Schema subset of OpenAPI 3.0: type, nullable, enum, ranges, lengths, pattern, items, properties, required,
+ * additionalProperties, allOf, anyOf, oneOf, $ref.  Written from the specification, independent of our schemas. */
 #include "tests/support/jsonschema.h"
 
 #include <math.h>

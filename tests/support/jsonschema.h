@@ -1,4 +1,4 @@
-/* jsonschema.h - whether a document is what a schema of an OpenAPI 3.0 document says: the part of JSON Schema used there. */
+/* jsonschema.h - validates a value against a schema of an OpenAPI 3.0 document: the part of JSON Schema used there. */
 #ifndef JSONSCHEMA_H
 #define JSONSCHEMA_H
 
@@ -11,7 +11,7 @@ struct jsonschema_fault {
 	char text[128];
 };
 
-/* Whether `value`, from a pointer on, is what the schema at a pointer of `document` takes. */
+/* Whether `value` at `pointer` is valid by the schema at the JSON Pointer `schema` of `document`. */
 bool jsonschema_takes(const struct reading *document, const char *schema, const struct reading *value,
                       const char *pointer, struct jsonschema_fault *fault);
 

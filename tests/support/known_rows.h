@@ -19,7 +19,7 @@ enum row_known {
 
 int row_known(struct row *row, enum row_known which);
 
-/* A row of its own for every number: any law and damping, up to four buildings or a wall, levels within stories. */
+/* A different row for every number: any law and damping, up to four buildings or a wall, levels within stories. */
 int row_random(struct row *row, uint64_t number);
 
 int row_law(const char *name); /* row of the laws */

@@ -1,13 +1,13 @@
 /* oracle.c - two oscillators with a contact by classical Runge-Kutta in extended precision.
  *
- *   1. u1, v1, u2, v2 and the impulse of the contact are stepped with a fixed step; what the laws remember and whether
- *      the bodies touch stay as they are during a step and are brought up to date at its end.
- *   2. `located`: a step in which a law's branch, the sign of a velocity or the touching changes is bisected to end
+ *   1. u1, v1, u2, v2 and the impulse of the contact are stepped with a fixed step; the state of the laws and of the contact
+ *      is constant during a step and updated at its end.
+ *   2. `located`: a step in which a law's branch, the sign of a velocity or the contact changes is bisected to end
  *      just past the first change, so every step is smooth and the error falls with the fourth power of the step.
  *      Otherwise nothing is located and it falls with the first power.
  *   3. Forces come from the laws' definitions in oracle_law.c.
  *
- * Where it may be trusted: to the difference of two step lengths, while a small change of the motion stays small. */
+ * Its error is about the difference between two step lengths, as long as the motion is not chaotic. */
 #include "tests/support/oracle.h"
 
 #include <assert.h>

@@ -1,4 +1,4 @@
-/* oracle.h - the response of a scene by a plain fixed-step integrator, to judge the engine by.
+/* oracle.h - the response of a scene by a plain fixed-step integrator, as a reference for the engine.
  *
  * Written from the model alone and never linked into the product.  SI units; calls may run in any thread. */
 #ifndef ORACLE_H
@@ -28,7 +28,7 @@ struct oracle_start {
 struct oracle_contact {
 	double start, duration; /* [s] */
 	double speed;           /* of approach when it starts [m/s] */
-	double departure;       /* relative speed when it ends, > 0 apart [m/s] */
+	double departure;       /* relative speed when it ends, > 0: separating [m/s] */
 	double impulse;         /* [N s] */
 };
 
@@ -37,7 +37,7 @@ struct oracle_trace {
 	struct oracle_contact contacts[ORACLE_CONTACTS_MAX]; /* (n_contacts), the first ones */
 };
 
-/* A law's force and what it remembers, for quasi-static paths. */
+/* A law's force and its state variables, for quasi-static paths. */
 struct oracle_law {
 	int row;               /* of oracle_law.c's table */
 	long double k, k2;     /* slopes [N/m] */

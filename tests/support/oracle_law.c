@@ -1,6 +1,6 @@
 /* oracle_law.c - the laws from their definitions, for the oracle.
  *
- * Forces come from a slider's place, a curve and the farthest points, not from pieces and edges. */
+ * Forces come from a slider's position, a curve and the extreme points, not from branches and edges. */
 #include "tests/support/oracle.h"
 
 #include <assert.h>

@@ -1,7 +1,7 @@
-/* Stands between a poundd and the C library (LD_PRELOAD): fails, records and counts what faults.h asks for.
+/* Wraps functions of the C library for a poundd (LD_PRELOAD): injects faults, records and counts as faults.h requests.
  *
- * Files are known by their names when they are opened; what is not the database, its WAL or journal, or their folder
- * goes through untouched.  An entry of the record is one appending write, so that threads and processes do not mix. */
+ * Files are recognized by their names at open; calls for files other than the database, its WAL or journal, or their folder
+ * are unchanged.  An entry of the record is one appending write, so that threads and processes do not mix. */
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>

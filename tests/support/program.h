@@ -1,5 +1,5 @@
-/* program.h - the built programs as a user meets them: started with arguments and a standard input, and judged by
- * what they print and how they end.  POUND_BUILD is the folder of the programs. */
+/* program.h - runs the built programs as a user does: with arguments and a standard input, and checks their output
+ * and exit status.  POUND_BUILD is the folder of the programs. */
 #ifndef PROGRAM_H
 #define PROGRAM_H
 
@@ -31,7 +31,7 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 /* Waits for its end: exit status, or 128 + signal. */
 int program_end(pid_t pid);
 
-/* What a program that ends well drew on a terminal of so many columns as its stderr; the caller frees it. */
+/* What a program, which must succeed, writes to a terminal of so many columns as its stderr; the caller frees it. */
 char *program_drawn(const char *const arguments[], int columns);
 
 /* A poundd of the test's own (service.h), its address in POUND_URL; service_teardown ends it. */

@@ -1,4 +1,4 @@
-/* A socket, and what comes out of it. */
+/* Requests and answers through a plain socket. */
 #include "tests/support/raw_http.h"
 
 #include <arpa/inet.h>

@@ -5,13 +5,13 @@
 #include "engine/pound.h"
 #include "schema/json/json_pointer.h"
 
-/* The study of a design that must be right, for a model of one's own. */
+/* The study of a valid design, for an external model. */
 struct pound_study *results_design(const char *document);
 
 /* The result of a study that must succeed; the caller closes it. */
 struct reading *results_of_study(const char *document);
 
-/* The indices of a design and the lines that a model made of it, which must be right; the caller closes them. */
+/* The indices of a valid design and valid lines of model outputs; the caller closes them. */
 struct reading *results_of_lines(const char *document, const char *csv);
 
 #endif

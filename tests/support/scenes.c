@@ -154,7 +154,7 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	specimen_law(specimen, specimen_laws[number % SPECIMEN_LAWS], fmax(0, given));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
 	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
-	scene->law.corrections = specimen_uniform(stream, 0, 3) >= 1; // those of a search: unit_yield
+	scene->law.corrections = specimen_uniform(stream, 0, 3) >= 1; // as used in a search: unit_yield
 	if (specimen_uniform(stream, 0, 1) > 0.25)
 		return;
 	struct pound_law common = scene->law;
@@ -245,7 +245,7 @@ void specimen_alike(struct specimen *specimen, int number, int law)
 	specimen_noise(specimen, stream, 1, 0.01, 1001);
 }
 
-/* Makes the scene and the record those of a reference. */
+/* Sets the scene and the record of a reference. */
 void specimen_reference(struct specimen *specimen, const struct specimen_reference *reference,
                         double time_step)
 {
@@ -310,7 +310,7 @@ struct pound_task specimen_impact(double restitution, bool tension, int n_sample
 static struct {
 	void (*act)(void *);
 	void *of;
-	clockid_t clock; /* of who computes */
+	clockid_t clock; /* CPU clock of the computing thread */
 	double from;     /* [s] */
 } later;
 

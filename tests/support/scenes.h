@@ -1,6 +1,6 @@
 /* scenes.h - response studies built in C, for tests of the engine without documents.
  *
- * SI units.  A specimen owns its record; the study inside points at it, so a specimen stays where it is. */
+ * SI units.  A specimen owns its record; the study inside points to it, so a specimen must not be moved. */
 #ifndef SCENES_H
 #define SCENES_H
 
@@ -47,19 +47,19 @@ void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, doubl
 /* Uniform in [low, high): the next of a stream. */
 double specimen_uniform(uint64_t *stream, double low, double high);
 
-/* A specimen of its own for every number: any law on either side, both contact rules, gap or none, wall, damping 0 to
+/* A different specimen for every number: any law on either side, both contact rules, gap or none, wall, damping 0 to
  * 0.1, restitution 0 to 1 with both ends, contact 10 to 10^4 times stiffer, yield displacement given or found, noise
  * that jumps to its first value or rises from 0. */
 void specimen_random(struct specimen *specimen, int number, double time_step, int n);
 
-/* A specimen of its own for every number: a body of a law that yields is pressed on a wall or on another body, creeps where it
- * has yielded, turns there and goes to and fro by anything from a rounding to a thirtieth, and comes free at the end.
+/* A different specimen for every number: a yielding body is in sustained contact with a wall or another body, creeps after
+ * yielding, reverses there and oscillates by anything from a rounding to a thirtieth, and separates at the end.
  *
- * Given    parts  samples that each of the record's, on which it is straight, are split into
+ * Given    parts  samples that each of the record's linear segments is split into
  */
 void specimen_creeping(struct specimen *specimen, int number, int parts);
 
-/* A specimen of its own for every number: bodies that touch at rest and are alike but for 1 to 20 roundings of a frequency.
+/* A different specimen for every number: bodies that touch at rest and are alike but for 1 to 20 roundings of a frequency.
  *
  * Given    law  of both: a row of specimen_laws
  */

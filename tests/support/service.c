@@ -1,4 +1,4 @@
-/* Starts poundd as a user would, and asks it through libcurl. */
+/* Starts poundd as a user would, and sends it requests through libcurl. */
 #include "tests/support/service.h"
 
 #include <curl/curl.h>

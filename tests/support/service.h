@@ -7,7 +7,7 @@
  *   service_stop(service);
  *   service_free(service);
  *
- * What goes wrong in here fails the test. */
+ * Errors in these functions fail the test. */
 #ifndef SERVICE_H
 #define SERVICE_H
 
@@ -16,8 +16,8 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-/* Rows of a study that runs long enough to be asked about, cancelled or killed meanwhile; whether the memory of a process is its
- * own: the sanitizers have their own allocator. */
+/* Rows of a study that runs long enough to be queried, cancelled or killed meanwhile; whether the memory of a process can be
+ * measured: the sanitizers have their own allocator. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 enum { SERVICE_ROWS = 200, SERVICE_MEMORY = 0 };
 #else
@@ -35,7 +35,7 @@ struct service *service_new(void); /* a directory, no server yet */
 struct service *service_with(const char *const settings[][2], int n_workers);
 void service_free(struct service *service);                 /* kills what runs, removes the directory */
 void service_start(struct service *service, int n_workers); /* returns when it listens */
-int service_try(struct service *service, int n_workers);    /* 0: it listens; else how it ended */
+int service_try(struct service *service, int n_workers);    /* 0: it listens; else its exit status */
 int service_run(const struct service *service,
                 int n_workers);             /* another one: its exit status, when it ends */
 void service_stop(struct service *service); /* SIGTERM; it must exit with 0 */
@@ -53,14 +53,14 @@ struct ask {
 	const char *headers[3];
 	const char *body;
 	size_t length;
-	bool may_fail; /* no answer is one of status 0 */
+	bool may_fail; /* status 0: no answer */
 };
 
 struct answer service_ask(const struct service *service, const struct ask *ask);
 struct answer service_get(const struct service *service, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 struct answer service_post(const struct service *service, const char *study);
-/* with an Idempotency-Key, NULL: none; no answer is one of status 0 */
+/* with an Idempotency-Key, NULL: none; status 0: no answer */
 struct answer service_post_keyed(const struct service *service, const char *study, const char *key);
 void answer_free(struct answer *answer);
 
@@ -90,7 +90,7 @@ void service_histories(const struct service *service, int signals, char id[17]);
 /* A result with its timing taken out; in place. */
 char *service_timeless(char *result);
 
-/* All that a study has brought forth, but for its timing. */
+/* All output of a study, except its timing. */
 struct service_bytes {
 	char *result, *samples;
 };

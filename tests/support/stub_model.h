@@ -1,6 +1,6 @@
 /* stub_model.h - a model server of UM-Bridge 1.0 in a process of its own: the Ishigami function of 3 inputs in 2 vectors.
  *
- * What goes wrong in here fails the test. */
+ * Errors in these functions fail the test. */
 #ifndef STUB_MODEL_H
 #define STUB_MODEL_H
 

@@ -253,7 +253,7 @@ static void draw(struct text *text)
  *
  * Given    seed     of the first; 0: the next one of the same sequence
  * Returns  text     (VALID_STUDY_SIZE)
- *          drawn    counts those that were not valid, too
+ *          drawn    counts invalid studies, too
  *          value    for study_free
  */
 struct pound_study *valid_study(uint64_t seed, char *text, int *drawn)
