@@ -1,9 +1,9 @@
-/* chain_pieces.c - the motion of a floor of a chain, step by step from the exact solver, as pieces.
+/* chain_pieces.c - the motion of a floor of a chain, from the steps of the exact solver, as pieces.
  *
- * 1. A step in time is a piece as it is.
- * 2. A step in the variable of nonlinear_contact.inl, in which a contact has powers of its overlap, is no polynomial in time.  It is halved
- *    until the interpolation at Chebyshev's nodes is one to rounding: near where the contact begins or ends, at t = 0,
- *    accelerations have terms of t^1.5, so that what a piece misses fades by 2^2.5 with every halving.
+ * 1. A step whose series are in time is one piece.
+ * 2. A step in the variable of nonlinear_contact.inl (contacts with powers of the overlap) is no polynomial in time.  It is halved
+ *    until interpolation at Chebyshev nodes is exact to rounding: near the start or end of the contact, t = 0, accelerations have
+ *    terms of t^1.5, so the velocity error of a piece falls by 2^2.5 with every halving.
  * 3. A rigid impact is a jump of the velocity at the start of a piece. */
 #include "engine/floor/floor_pieces.h"
 
@@ -13,21 +13,21 @@
 
 enum {
 	NODES = 16, /* of an interpolation */
-	TAIL = 3,   /* last coefficients that are looked at */
+	TAIL = 3,   /* last coefficients, which must be roundings */
 	HALVINGS = 60,
-	ROUNDS = 100, /* of the root search for a time; Newton's method, halving where it leaves the bracket */
+	ROUNDS = 100, /* of the root search for a time; Newton's method, bisection if it leaves the bracket */
 };
 
-/* What is interpolated: the acceleration of both floors, and the contacts' part of that of the first. */
+/* Interpolated series: the acceleration of both floors, and the contacts' part of the first floor's acceleration. */
 enum { SERIES = POUND_CHAIN_OBSERVED + 1 };
 
-/* cos(pi (2 k + 1)/32), k = 0 .. 7: the nodes, and by symmetry all that their polynomials have there */
+/* cos(pi (2 k + 1)/32), k = 0 .. 7: the positive nodes; the others are their negatives */
 static const double NODE[NODES / 2] = {
     0.9951847266721969, 0.9569403357322088,  0.881921264348355,  0.773010453362737,
     0.6343932841636455, 0.47139673682599764, 0.2902846772544624, 0.0980171403295606,
 };
 
-/* A part of a chain's piece, by the shares s of that. */
+/* A segment of a chain's piece; s in [0, 1] is the variable of the piece's series. */
 struct span {
 	double from, upto; /* s */
 	double start, end; /* time since the start of the chain's piece [s] */
@@ -49,7 +49,7 @@ static double series_rate(const double *c, int order, double s)
 	return sum;
 }
 
-/* Largest magnitude that a series can have in its step. */
+/* Bound of a series over its step. */
 static double series_size(const double *c, int order)
 {
 	double sum = 0;
@@ -58,7 +58,7 @@ static double series_size(const double *c, int order)
 	return sum;
 }
 
-/* The share s at which a time is, between two that hold it, to the rounding of the clock. */
+/* The variable s at a given time, bracketed by low and high, to the rounding of the clock's series. */
 static double share_at(const struct pound_chain_piece *chain, double time, double low, double high)
 {
 	const double rounding = DBL_EPSILON * series_size(chain->clock, chain->order);
@@ -85,7 +85,7 @@ static const double *series_of(const struct pound_chain_piece *chain, int k)
 	return k < POUND_CHAIN_OBSERVED ? chain->floors[k].acceleration : chain->floors[0].push;
 }
 
-/* Values of all series at the nodes of a part, from its end to its start. */
+/* Values of all series at the nodes of a segment, from its end to its start. */
 static void nodes_fill(const struct pound_chain_piece *chain, const struct span *span,
                        double value[SERIES][NODES])
 {
@@ -100,7 +100,7 @@ static void nodes_fill(const struct pound_chain_piece *chain, const struct span 
 
 /* Coefficients of Chebyshev polynomials from values at the nodes.
  *
- *   c_j = 2/N sum_k f_k T_j(x_k), half of that for j = 0
+ *   c_j = 2/N sum_k f_k T_j(x_k), half of this for j = 0
  */
 static void chebyshev_fill(const double value[NODES], double c[NODES])
 {
@@ -118,7 +118,7 @@ static void chebyshev_fill(const double value[NODES], double c[NODES])
 		c[j] *= (j ? 2.0 : 1.0) / NODES;
 }
 
-/* Coefficients of powers of the share of the part, by Clenshaw's recurrence for polynomials of 2 x - 1. */
+/* Coefficients of powers of the elapsed fraction x of the segment, by Clenshaw's recurrence for polynomials of 2 x - 1. */
 static void powers_fill(const double chebyshev[NODES], struct pound_polynomial *a)
 {
 	double b[2][NODES + 1] = {{0}}; // b_j+1, b_j+2
@@ -135,7 +135,7 @@ static void powers_fill(const double chebyshev[NODES], struct pound_polynomial *
 	memcpy(a->c, b[0], sizeof *a->c * NODES);
 }
 
-/* Whether what an interpolation misses is a rounding of the velocity: of what it is, or of what the whole piece gives it. */
+/* Whether the interpolation error is a rounding of the velocity: of its value, or of its change over the chain's piece. */
 static bool resolved(const struct pound_chain_piece *chain, const struct span *span,
                      const double chebyshev[SERIES][NODES])
 {
@@ -150,7 +150,7 @@ static bool resolved(const struct pound_chain_piece *chain, const struct span *s
 	return all;
 }
 
-/* The last of the pieces is whole. */
+/* The last piece is complete; a history takes it at once. */
 static void piece_end(struct pound_floor_motion *motion)
 {
 	if (!motion->beside)
@@ -161,7 +161,7 @@ static void piece_end(struct pound_floor_motion *motion)
 
 /* Sets the acceleration of both floors over a piece, and the contacts' part of it.
  *
- * Given    polynomials  of SERIES, their coefficients
+ * Given    a  coefficients of each series
  */
 static void piece_fill(struct pound_floor_motion *motion, struct pound_floor_piece *piece,
                        const struct pound_polynomial a[SERIES], int order)
@@ -178,7 +178,7 @@ static void piece_fill(struct pound_floor_motion *motion, struct pound_floor_pie
 	piece_end(motion);
 }
 
-/* Adds a part of a chain's piece whose time is a series of s, in halves where it is no polynomial of time yet. */
+/* Adds a segment of a chain's piece whose time is a series of s, halved until it is a polynomial of time. */
 static void span_add(struct pound_floor_motion *motion, const struct pound_chain_piece *chain,
                      const struct span *span, int halvings)
 {
@@ -215,7 +215,7 @@ void pound_floor_start_chain(struct pound_floor_motion *motion)
 	motion->stretch->order = 0;
 }
 
-/* Makes the pieces of a step of a chain.
+/* Makes the pieces of one step of a chain.
  *
  * Test     unit_chain_pieces
  */

@@ -1,8 +1,8 @@
 /* floor.c - the spectra and the history of one floor under one task.
  *
- * 1. The exact solver follows some tasks at once, in its lanes; each floor is an observer of its own, which keeps the instants that it
- *    hears of, and makes pieces of its motion of them when it has no room for more, or at the end;
- * 2. every oscillator goes over these before the next ones are made, so that memory does not grow with time. */
+ * 1. The exact solver integrates several tasks at once, in its lanes; each floor has its own observer, which buffers the reported
+ *    instants and makes pieces of the floor's motion from them when the buffer is full, or at the end;
+ * 2. every oscillator is integrated over these pieces before the next ones are made, so that memory does not grow with time. */
 #include "engine/floor/floor.h"
 
 #include <assert.h>
@@ -14,9 +14,9 @@
 #include "engine/numeric/elementary.h"
 #include "engine/solver/solver.h"
 
-enum { INSTANTS = 256 /* of one floor, until pieces are made of them */ };
+enum { INSTANTS = 256 /* buffered per floor before pieces are made from them */ };
 
-/* a floor on its way, and the oscillators on it */
+/* a floor that is being integrated, and the oscillators on it */
 struct follow {
 	struct pound_floor_motion motion;
 	struct pound_bank bank;
@@ -33,7 +33,7 @@ struct pound_floor {
 	double
 	    *states; /* of the oscillators of every floor  (POUND_FLOORS x POUND_DRIVES x 3, whole groups each) */
 	double damping;
-	struct pound_floor_motion motion; /* of a history, and of a chain */
+	struct pound_floor_motion motion; /* for a history, and for a chain */
 	struct pound_segment_powers powers;
 	alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 	struct pound_floor_stretch stretch;
@@ -42,7 +42,7 @@ struct pound_floor {
 
 typedef void width_bank(const struct pound_bank *, const struct pound_bank_input *, void *scratch);
 
-/* Takes a bank over a stretch at a lane count; 0: the widest there is; false: this machine has no such lanes. */
+/* Integrates a bank over a stretch with a lane count, 0: the widest; false: this processor does not have it. */
 bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank,
                                  const struct pound_bank_input *stretch, void *scratch)
 {
@@ -54,7 +54,7 @@ bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank,
 	return width >= 0;
 }
 
-/* Frequency k of a spectrum, both ends of a range exact [Hz].
+/* Frequency k of a spectrum [Hz]; both ends of a range are exact.
  *
  * Test     unit_floor: a_range_of_frequencies_is_a_geometric_one
  */
@@ -92,7 +92,7 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 	floor->damping = spectrum->damping_ratio;
 	floor->omega = numbers;
 	floor->states = numbers + whole;
-	// what fills the last group is its last frequency once more
+	// the last group is padded with the last frequency
 	for (int k = 0; k < whole; k++)
 		floor->omega[k] = 2 * PI * pound_spectrum_frequency(spectrum, k < spectrum->n ? k : spectrum->n - 1);
 	return floor;
@@ -100,15 +100,15 @@ struct pound_floor *pound_floor_init(void *memory, const struct pound_spectrum *
 
 /* ---- the motion ---- */
 
-/* how a motion is followed */
+/* the callbacks of one integration */
 struct follower {
 	struct pound_task_observer
-	    observer; /* of a pair: passes every instant on to pound_floor_observe and floor->motion */
+	    observer; /* of a pair: passes every instant to pound_floor_observe with floor->motion */
 	struct pound_floor_taker taker;    /* called for every stretch of pieces: floor->stretch */
-	struct pound_floor_beside *beside; /* of a chain, as struct pound_floor_motion has it */
+	struct pound_floor_beside *beside; /* of a chain, for struct pound_floor_motion */
 };
 
-/* A pair with an observer, who asks for no largest displacements. */
+/* A copy of a pair with an observer and without largest displacements. */
 static struct pound_task observed_pair(const struct pound_task *task,
                                        const struct pound_task_observer *observer)
 {
@@ -118,7 +118,7 @@ static struct pound_task observed_pair(const struct pound_task *task,
 	return observed;
 }
 
-/* Follows n pairs: one alone is done sooner in one lane than in many. */
+/* Integrates n pairs; a single one is faster in one lane than in many. */
 static void pairs_follow(const struct pound_task *observed, struct pound_task_result *results, int n,
                          const struct pound_floor_ask *ask)
 {
@@ -135,12 +135,12 @@ static void chain_follow(struct pound_floor *floor, const struct pound_floor_ask
 	observer.into = &floor->motion;
 	observed.observer = &observer;
 	observed.asked = 0;
-	chain->result->status = POUND_OK; // stopped before it began it is not written
+	chain->result->status = POUND_OK; // not written if stopped before the start
 	pound_floor_start_chain(&floor->motion);
 	pound_chain_lanes(0, &observed, chain->result, 1, ask->scratch, ask->stop);
 }
 
-/* Follows a pair whose contact force the march of pairs does not have. */
+/* Integrates, as a chain, a pair whose contact force the solver of pairs does not have. */
 static void pair_follow_as_chain(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                  struct pound_task_result *result)
 {
@@ -171,7 +171,7 @@ int pound_floor_contact(const struct pound_floor_of_chain *chain)
 	return -1;
 }
 
-/* Where a level of a chain is at the end.
+/* Final displacement or velocity of the right level of a contact of a chain.
  *
  * Given    measure  POUND_FLOOR_END_U or POUND_FLOOR_END_V
  */
@@ -187,7 +187,7 @@ static double level_end(const struct pound_floor_of_chain *chain, int link, enum
 	return sum;
 }
 
-/* Sets the largest impulse of a contact on a floor of a chain over its mass, and how many contacts there were. */
+/* Sets the largest impulse of a contact on a floor of a chain over the floor's mass, and the number of contacts. */
 static void impulses_fill(const struct pound_floor_of_chain *chain, struct pound_task_result *result)
 {
 	const struct pound_chain_task *task = chain->task;
@@ -204,11 +204,11 @@ static void impulses_fill(const struct pound_floor_of_chain *chain, struct pound
 	}
 }
 
-/* Follows a task to its end.
+/* Integrates a task to its end.
  *
  * Given    ask       its task, or its chain, stop and scratch
- * Returns  result    of the exact solver; of a chain its status, and the end of the floor in place of the left body's
- * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ * Returns  result    of the exact solver; of a chain its status, and the final state of the floor as the left body's
+ * Status   POUND_CHATTER and others  the motion could not be computed, or not to its end
  *          POUND_STOPPED             stop was set
  */
 static enum pound_status floor_follow(struct pound_floor *floor, const struct pound_floor_ask *ask,
@@ -221,7 +221,7 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 	                                      .pushed = true,
 	                                      .beside = follower->beside};
 	if (ask->chain.task) {
-		// a history is of one contact, spectra are of all
+		// a history reports one contact, spectra include all
 		const int link = follower->beside ? pound_floor_contact(&ask->chain) : -1;
 		const struct pound_chain_observer observer = {.floor = ask->chain.floor, .link = link};
 		const double *floors = ask->chain.result->floors + ask->chain.floor * POUND_FLOOR_MEASURES;
@@ -247,7 +247,7 @@ static enum pound_status floor_follow(struct pound_floor *floor, const struct po
 
 /* ---- spectra ---- */
 
-/* Takes the oscillators of a floor over the pieces that were made. */
+/* Integrates the oscillators of a floor over the current pieces. */
 static void follow_take(void *of)
 {
 	const struct follow *follow = of;
@@ -256,7 +256,7 @@ static void follow_take(void *of)
 	(void)done;
 }
 
-/* Oscillators at rest on the floor number k, of which no instant was reported yet. */
+/* Initializes floor k, with oscillators at rest. */
 static struct follow *follow_begin(struct pound_floor *floor, const struct pound_floor_ask *ask, int k)
 {
 	struct follow *follow = &floor->follows[k];
@@ -289,7 +289,7 @@ static struct follow *follow_begin(struct pound_floor *floor, const struct pound
 	return follow;
 }
 
-/* Makes pieces of the instants that were kept, and takes the oscillators over them: the stretch is of this floor meanwhile. */
+/* Makes pieces from the buffered instants and integrates the oscillators over them, in the stretch that all floors share. */
 static void follow_empty(struct follow *follow)
 {
 	follow->motion.stretch->n = follow->motion.stretch->n_maps = 0;
@@ -323,11 +323,11 @@ static void answer_fill(const struct pound_floor *floor, const struct follow *fo
 
 /* Pseudo-acceleration spectra of the floors of n tasks, at most POUND_FLOORS.
  *
- * Given    asks     their tasks, with one stop and one scratch; an undefined lane count is a fault of the caller
- * Returns  answers  largest w^2 |z| of oscillators at rest at first, while the ground motion lasts
+ * Given    asks     all with the same stop and scratch; the processor must have their lane counts
+ * Returns  answers  largest w^2 |z| during the ground motion, of oscillators initially at rest
  *          value    the first status that is not POUND_OK
- * Status   POUND_CHATTER  the motion could not be followed; the answer is not to be used
- *          POUND_STOPPED  stop was set; nor is it
+ * Status   POUND_CHATTER  the motion could not be computed; the answer is invalid
+ *          POUND_STOPPED  stop was set; the answer is invalid
  *
  * Source   model.md 7 of the project's design pages
  * Test     unit_floor
@@ -337,7 +337,7 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 {
 	struct pound_task observed[POUND_FLOORS];
 	struct pound_task_observer observers[POUND_FLOORS];
-	struct pound_task_result results[POUND_FLOORS] = {0}; // stopped before they began they are not written
+	struct pound_task_result results[POUND_FLOORS] = {0}; // not written if stopped before the start
 	int of[POUND_FLOORS], n_observed = 0;
 	enum pound_status status = POUND_OK;
 	assert(n <= POUND_FLOORS);
@@ -369,25 +369,25 @@ enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct po
 
 /* ---- history ---- */
 
-/* Largest error of a spectrum computed from the rows of a history, and how many times larger than the floor's spectrum the
- * one of the contact force alone may be for that (impact_only over pounding in a result; 16 at 0.1 Hz in the example). */
+/* Largest relative error of a spectrum computed from the rows of a history, and the largest ratio of the contact force's spectrum
+ * to the floor's spectrum for which it holds (impact_only over pounding in a result; 16 at 0.1 Hz in the example). */
 static const double ROWS_ERROR = 0.005, ROWS_DRIFT = 60;
 
-/* Largest spacing of rows: h^2 |a''| over the size of a, between straight lines.
+/* Largest spacing of rows for linear interpolation: h^2 |a''| over the size of a.
  *
  *   theta^2 = min(12 E/D, max((pi E)^2, 4 pi^2 xi E))
  *
  * | h, a | time between two rows, acceleration of the floor |        | E | ROWS_ERROR |
- * | A, W | size and rate of a part of it, such as one contact: a'' = W^2 A, theta = W h |   | D | ROWS_DRIFT |
+ * | A, W | size and rate of a component of it, such as one contact: a'' = W^2 A, theta = W h |   | D | ROWS_DRIFT |
  * | w, xi | frequency and damping of an oscillator on the floor |
  *
- * Between rows a straight line misses a by a'' s (h - s)/2, and by h^2 a''/12 in the mean.
- * 1. An oscillator that is slower than the rows feels the mean: all contacts appear theta^2/12 weaker.  Its spectrum is
- *    made of what contacts and the floor's own restoring force leave of each other, at most D times less than either.
- * 2. One of the period of the rows, w = 2 pi/h, feels the first harmonic, h^2 a''/(2 pi^2).  Damped, its spectrum errs by at
- *    most 1/(2 xi) of that: theta^2/(4 pi^2 xi) A.  Undamped, by w/2 times its integral while a'' keeps its sign, which is
- *    2 W A: theta/pi A.  Its spectrum is at least A.
- * Source   Nigam and Jennings, Bulletin of the Seismological Society of America 59 (1969) 909: a record of straight lines
+ * The error of linear interpolation between rows is a'' s (h - s)/2, in the mean h^2 a''/12.
+ * 1. An oscillator slower than the rows responds to the mean: all contacts appear theta^2/12 weaker.  Its spectrum is the
+ *    difference between contacts and the floor's own restoring force, at most D times less than either.
+ * 2. An oscillator with the period of the rows, w = 2 pi/h, responds to the first harmonic, h^2 a''/(2 pi^2).  If damped, its
+ *    spectrum errs by at most 1/(2 xi) times this: theta^2/(4 pi^2 xi) A; if undamped, by w/2 times the integral of this while
+ *    a'' keeps its sign (the integral of a'' is 2 W A): theta/pi A.  Its spectrum is at least A.
+ * Source   Nigam and Jennings, Bulletin of the Seismological Society of America 59 (1969) 909: a piecewise linear record
  */
 static double rows_spacing(double xi)
 {
@@ -398,7 +398,7 @@ static double rows_spacing(double xi)
 
 enum { MOTION_ORDER = POUND_FLOOR_ORDER + 2 };
 
-/* The motion of both bodies over a piece: coefficients of powers of the share of its step that is gone. */
+/* The motion of both bodies over a piece: coefficients of powers of the elapsed fraction of its step. */
 struct piece_motion {
 	double start, step;
 	double u[POUND_OSCILLATORS][MOTION_ORDER + 1], gap[MOTION_ORDER + 1];
@@ -406,19 +406,19 @@ struct piece_motion {
 	double ground[2];
 };
 
-/* Where the rows of a history go, and how far they have come. */
+/* State of the output of a history's rows. */
 struct chronicle {
 	struct pound_floor *floor;
 	pound_floor_take *take;
 	void *into;
 	double spacing; /* rows_spacing */
-	bool of_chain;  /* what is beside the floor: */
+	bool of_chain;  /* `beside` is used instead of `from` */
 	struct pound_floor_beside beside;
-	struct pound_instant_of_task from; /* where this interval began */
-	struct pound_floor_instant last;   /* the end of the piece before */
+	struct pound_instant_of_task from; /* start of this interval */
+	struct pound_floor_instant last;   /* end of the previous piece */
 	double largest;                    /* acceleration in any piece without contact [m/s2] */
 	double open,
-	    needed; /* time since the last row [s]; most that a'' was since then, over what is allowed [1/s2] */
+	    needed; /* time since the last row [s]; largest |a''| since then over spacing times size of a [1/s2] */
 };
 
 static double polynomial_at(const double *c, int order, double s)
@@ -429,13 +429,13 @@ static double polynomial_at(const double *c, int order, double s)
 	return sum;
 }
 
-/* The right body over a piece of the left one's floor, one order after the other.
+/* Series of the right body over a piece of the left floor's motion, order by order.
  *
  *   u2'' = -(c2 u2' + k2 u2 + o2) - r P - d2 g     gap'' = u2'' - u1''
  *
  * | P | the piece's push, -F/m1 |   | g | ground | | d | drive, 0: a rigid wall |   | r | m1/m2 |
  * | c2, k2, o2 | damping, stiffness and offset of the right body's branch, per mass |
- * Valid    to rounding, as the piece is: its step is within reach of the right body's rates, too
+ * Valid    to rounding, as the piece: its step is short enough for the right body's rates, too
  */
 static void right_fill(struct piece_motion *m, const struct chronicle *chronicle)
 {
@@ -457,7 +457,7 @@ static void right_fill(struct piece_motion *m, const struct chronicle *chronicle
 	}
 }
 
-/* The same of a floor of a chain. */
+/* The same for a floor of a chain. */
 static void beside_fill(struct piece_motion *m, const struct pound_floor_beside *beside)
 {
 	for (int n = 0; n <= POUND_FLOOR_ORDER; n++) {
@@ -470,9 +470,9 @@ static void beside_fill(struct piece_motion *m, const struct pound_floor_beside 
 	}
 }
 
-/* Both bodies over a piece of the left one's floor.
+/* Series of both bodies over a piece.
  *
- * Given    start  both bodies where it begins
+ * Given    start  both bodies at its start
  */
 static void motion_fill(struct piece_motion *m, const struct chronicle *chronicle,
                         const struct pound_floor_piece *p, const struct pound_floor_instant *start)
@@ -523,7 +523,7 @@ static struct pound_floor_instant instant_at(const struct piece_motion *m, doubl
 	return now;
 }
 
-/* Both bodies where a piece begins, but for the accelerations. */
+/* Both bodies at the start of a piece, without the accelerations. */
 static struct pound_floor_instant piece_start(const struct chronicle *chronicle,
                                               const struct pound_floor_piece *p)
 {
@@ -549,7 +549,7 @@ static struct pound_floor_instant piece_start(const struct chronicle *chronicle,
 	return start;
 }
 
-/* Writes the rows of a piece: where it begins, if that is an instant or a row is due, and inside. */
+/* Writes the rows of a piece: at its start, if a reported instant is there or a row is due, and inside. */
 static void chronicle_piece(struct chronicle *chronicle, const struct pound_floor_piece *p)
 {
 	struct pound_floor_instant *last = &chronicle->last, start = piece_start(chronicle, p);
@@ -560,7 +560,7 @@ static void chronicle_piece(struct chronicle *chronicle, const struct pound_floo
 	if (!(chronicle->of_chain ? chronicle->beside.touching : chronicle->from.touching))
 		chronicle->largest = fmax(chronicle->largest, p->floor.bound[0]);
 	const double size = chronicle->spacing * fmax(chronicle->largest, p->floor.bound[0]);
-	const double inside = size > 0 ? p->floor.bound[2] / size : 0; // over what one row for the piece allows
+	const double inside = size > 0 ? p->floor.bound[2] / size : 0; // square of the number of rows needed
 	const double needed = fmax(chronicle->needed, inside / (m.step * m.step));
 	const bool instant = p->sampled || p->after_event;
 	const double open = chronicle->open + m.step;
@@ -603,7 +603,7 @@ static void chronicle_take(void *of)
 	stretch->n = 0;
 }
 
-/* The pieces of one interval are taken at a time, as the right body is known where it begins. */
+/* Pieces are taken interval by interval, because the right body is known at the start of each interval. */
 static void chronicle_observe(void *of, const struct pound_instant_of_task *instant)
 {
 	struct chronicle *chronicle = of;
@@ -614,12 +614,12 @@ static void chronicle_observe(void *of, const struct pound_instant_of_task *inst
 
 /* The history of both bodies of a task.
  *
- * Given    ask     the task; its drives, radians and lanes are not looked at
- * Returns  take    called in the order of time: at every sample; at an event twice, for what was before and what is after;
- *                  and between them as often as rows_spacing says
- * Status   POUND_CHATTER  the motion could not be followed to its end
+ * Given    ask     the task; its drives, radians and lanes are not used
+ * Returns  take    called in the order of time: at every sample; twice at an event, with the states before and after it;
+ *                  and between them as often as rows_spacing requires
+ * Status   POUND_CHATTER  the motion could not be computed to its end
  *          POUND_STOPPED  stop was set
- * Valid    a response spectrum of the left floor's acceleration, straight between rows, is within 0.5 % of
+ * Valid    a response spectrum of the left floor's acceleration, linear between rows, is within 0.5 % of
  *          pound_floor_spectra at every frequency at which impact_only is at most 60 times pounding
  * Test     unit_floor: a_history_has_every_sample_and_both_sides_of_every_event, a_floor_that_takes_hours_is_stopped;
  *          unit_floor_history

@@ -7,7 +7,7 @@
 
 struct pound_floor; /* work space of one worker */
 
-enum { POUND_FLOORS = 16 }; /* tasks that are followed at once */
+enum { POUND_FLOORS = 16 }; /* tasks integrated at once */
 
 size_t pound_floor_bytes(int n_frequencies);
 struct pound_floor *pound_floor_init(void *memory,
@@ -17,24 +17,24 @@ struct pound_floor *pound_floor_init(void *memory,
 struct pound_floor_of_chain {
 	const struct pound_chain_task *task;
 	int floor;
-	struct pound_chain_result *result; /* room for its measures */
+	struct pound_chain_result *result; /* space for its measures */
 };
 
-/* The contact between this floor and a level of the right neighbor; -1: it has none. */
+/* The contact between this floor and a level of the right neighbor; -1: none. */
 int pound_floor_contact(const struct pound_floor_of_chain *chain);
 
-/* what is asked of one task: of the left body of a pair, or of a floor of a chain */
+/* request for one task: the left body of a pair, or a floor of a chain */
 struct pound_floor_ask {
 	const struct pound_task *task;
-	struct pound_floor_of_chain chain; /* its task NULL: none */
-	int n_drives;                      /* 1: the whole acceleration; 2: the contact's part of it too */
-	double radians;                    /* an oscillator's longest step, at most 1.5 */
-	int lanes;                         /* 0: the widest there are */
-	const atomic_bool *stop;           /* looked at throughout; NULL: never */
-	void *scratch; /* POUND_EXACT_SCRATCH bytes, of a chain those of its march; 64-byte aligned */
+	struct pound_floor_of_chain chain; /* its task NULL: a pair */
+	int n_drives;                      /* 1: the floor's acceleration; 2: also the contact's part of it */
+	double radians;                    /* longest step of an oscillator, as its phase [rad], at most 1.5 */
+	int lanes;                         /* 0: the widest of this processor */
+	const atomic_bool *stop;           /* polled throughout; NULL: none */
+	void *scratch; /* POUND_EXACT_SCRATCH bytes, for a chain as its solver needs; 64-byte aligned */
 };
 
-/* what comes out; psa: [m/s2]  (n_frequencies) each */
+/* results; psa: [m/s2]  (n_frequencies) each */
 struct pound_floor_answer {
 	enum pound_status status;
 	double *psa[POUND_DRIVES];
@@ -46,8 +46,8 @@ struct pound_floor_answer {
 enum pound_status pound_floor_spectra(struct pound_floor *floor, const struct pound_floor_ask *asks,
                                       struct pound_floor_answer *answers, int n);
 
-/* Both bodies at one time: left, right; of a chain the floor and the level of its contact, without a contact 0 for that level and
- * of the gap. */
+/* State at one time of both bodies: left, right; in a chain of the floor and of the level opposite its contact.  Without a contact
+ * this level and the gap are 0. */
 struct pound_floor_instant {
 	double time;                                       /* [s] */
 	double u[POUND_OSCILLATORS], v[POUND_OSCILLATORS]; /* relative to the ground [m], [m/s] */
@@ -55,11 +55,11 @@ struct pound_floor_instant {
 	double gap, gap_rate;                              /* clear distance, < 0: overlap [m], [m/s] */
 	double ground;                                     /* acceleration [m/s2] */
 	double
-	    push; /* of the contact, without one of all on the floor: force over the left mass, < 0 pushes away [m/s2] */
+	    push; /* force of the contact, if there is none of all on the floor, over the left mass; < 0: repulsion [m/s2] */
 };
 
-/* Hands every row of a task's history to `take`: at the samples, on both sides of every event, and between them as often as
- * straight lines between rows need. */
+/* Calls `take` for every row of a task's history: at the samples, before and after every event, and between them as often as
+ * linear interpolation between rows needs. */
 typedef void pound_floor_take(void *into, const struct pound_floor_instant *instant);
 enum pound_status pound_floor_history(struct pound_floor *floor, const struct pound_floor_ask *ask,
                                       pound_floor_take *take, void *into);

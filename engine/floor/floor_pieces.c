@@ -1,11 +1,11 @@
-/* floor_pieces.c - one floor's motion, instant by instant from the exact solver, as pieces.
+/* floor_pieces.c - the motion of one floor, from the instants that the exact solver reports, as pieces.
  *
- * 1. Of free motion over a whole sample the state is given, and a polynomial is made of it where one is needed.
- * 2. Any other interval between two instants is a power series in time, or several where one does not reach: the floor's
- *    absolute acceleration -(c v + r + F)/m1 and its part -F/m1.
- * 3. A contact whose own swing has died away is a series as long as the bodies' own motion allows, however stiff it is.
+ * 1. Free motion over a whole sample is given by its state; a polynomial is made from it where needed.
+ * 2. Any other interval between two instants is a power series in time, or several if one is too long: of the floor's
+ *    absolute acceleration -(c v + r + F)/m1 and of its part -F/m1.
+ * 3. A contact whose own oscillation has decayed has series as long as the bodies' own motion allows, at any stiffness.
  *
- * What happens, and when, is the solver's: nothing is decided here. */
+ * The solver decides which events happen and when; nothing is decided here. */
 #include "engine/floor/floor_pieces.h"
 #include "engine/exact/tolerances.h"
 
@@ -16,7 +16,7 @@
 
 enum {
 	N = POUND_FLOOR_ORDER,
-	ORDER_LEAST = 5,       /* so that growing forcing has a fourth derivative, which bounds are made of */
+	ORDER_LEAST = 5,       /* so that linear forcing has a fourth derivative, which bounds need */
 	STEPS_LIMIT = 1 << 19, /* of series in one interval */
 	SETTLED_ROUNDS = 8,
 };
@@ -24,30 +24,30 @@ enum {
 static const double REACH = 1.5;              /* largest rate * step of a series */
 static const double NOTHING_BESIDE = 0x1p-48; /* of the largest acceleration */
 
-/* Least rate_touch * step of a quasi-static contact: its overlap is found from a power on by those above, which count by up to
- * N G/(W^2 h) and N^2/(W h)^2.  With the bodies' own damping a contact of no restitution is 1.01 times critical, so that
- * rate_touch is up to 1.15 W: below 0.3 and 0.02. */
+/* Smallest rate_touch * step of a quasi-static contact: each coefficient of its overlap is found from the next two, with factors up
+ * to N G/(W^2 h) and N^2/(W h)^2, W, G the contact's rate and damping.  With the bodies' own damping a contact of restitution 0 is
+ * 1.01 times critical, so that rate_touch <= 1.15 W: the factors are below 0.3 and 0.02. */
 static const double QUASI_STATIC_LEAST = 180;
 
-/* Largest acceleration of a swing that is left out, over what the bodies' are made of, however stiff the contact; and the
- * power of e by which losses take a swing from there to NOTHING_BESIDE, and more. */
+/* Largest neglected acceleration of a contact's own oscillation, over the terms of the bodies' accelerations, at any stiffness;
+ * and the exponent of e by which losses damp an oscillation from there to below NOTHING_BESIDE. */
 static const double SWING_MOST = 0x1p-24, SWING_LOST = 36;
 
-/* Derivatives by the share of the step that is gone, times 1/n! the coefficients of powers of it. */
+/* Derivatives by the elapsed fraction of the step; times 1/n! they are the coefficients of its powers. */
 struct body_series {
 	int order;
 	double step;
-	// of left, right and overlap; those of their velocities are one further on.  Apart: of left alone
+	// of left, right and overlap; index n + 1 has derivative n of their velocities.  Separated: of left only
 	double y[3][N + 2];
-	// of the floor's acceleration but for its branch's offset, and of the contact's part of it, times the step squared
+	// of the floor's acceleration without its branch's offset, and of the contact's part of it, times the step squared
 	double floor[N + 1], push[N + 1];
 };
 
 /* ---- polynomials ---- */
 
-/* Order of a polynomial without the terms that are rounding beside the others.
+/* Order of a polynomial without its last terms that are below rounding of the others.
  *
- * Given    size  (order + 1) magnitudes of its terms;  sum: of them
+ * Given    size  (order + 1) magnitudes of its terms;  sum: their sum
  */
 static int order_kept(const double *size, int order, double sum)
 {
@@ -60,7 +60,7 @@ static int order_kept(const double *size, int order, double sum)
 /* Bounds an acceleration over a step with two of its derivatives.
  *
  * Given    a  its coefficients  (order + 1)
- * Returns  value  its order, without the terms that are rounding beside the others
+ * Returns  value  its order, without last terms below rounding of the others
  */
 int pound_floor_bound(struct pound_polynomial *a, int order)
 {
@@ -68,7 +68,7 @@ int pound_floor_bound(struct pound_polynomial *a, int order)
 	for (int n = 0; n <= order; n++)
 		size[n] = fabs(a->c[n]);
 	size[order + 1] = 0;
-	// even and odd terms summed separately: the sums need not wait for each other
+	// even and odd terms summed separately: two shorter chains of additions
 	for (int n = 0; n <= order; n += 2)
 		for (int j = 0; j < 2; j++)
 			bound[0][j] += size[n + j];
@@ -87,7 +87,7 @@ int pound_floor_bound(struct pound_polynomial *a, int order)
 
 /* An acceleration over a step.
  *
- * Given    a  derivatives by the share of the step, times the step squared;  offset: besides
+ * Given    a  derivatives by the elapsed fraction of the step, times the step squared;  offset: subtracted
  * Returns  value  its order
  */
 static int polynomial_fill(struct pound_polynomial *into, const double *a, int order, double offset,
@@ -102,11 +102,11 @@ static int polynomial_fill(struct pound_polynomial *into, const double *a, int o
 
 /* Coefficients of the absolute acceleration -(c v + r) of a body in free motion over a sample.
  *
- * Given    state  as struct pound_floor_piece has it
+ * Given    state  as in struct pound_floor_piece
  *          k, c   stiffness [1/s2] and damping [1/s] per mass;  h  the sample step [s]
  * Returns  a      [m/s2]  (order + 1)
  *
- *   r' = h k v     v' = -h (c v + r + forcing)     by the share of the sample that is gone
+ *   r' = h k v     v' = -h (c v + r + forcing)     by the elapsed fraction of the sample
  * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
 void pound_floor_free_motion(const double state[4], double k, double c, double h, int order, double *a)
@@ -125,7 +125,7 @@ void pound_floor_free_motion(const double state[4], double k, double c, double h
 /* Coefficients of a drive over a piece of a stretch.
  *
  * Given    damping  of the left body, per mass [1/s]
- * Returns  c        [m/s2]  (value + 1): the piece's own, or those of a floor in free motion, made into `room`
+ * Returns  c        [m/s2]  (value + 1): the piece's own, or of a floor in free motion, computed into `room`
  *          value    their order; -1: the drive is 0
  * Test     unit_floor_pieces: every_piece_leads_to_the_next
  */
@@ -153,20 +153,20 @@ int pound_floor_drive(const struct pound_floor_stretch *stretch, const struct po
 int pound_floor_terms(double x)
 {
 	int n = 0;
-	for (int k = 0; k <= POUND_FLOOR_TERMS; k++) // all: no branch foresees where to stop
+	for (int k = 0; k <= POUND_FLOOR_TERMS; k++) // all are compared: an early exit would be mispredicted
 		n += x > POUND_TERMS_REACH[k];
 	return n;
 }
 
-/* Order of the series of a step by rate * step. */
+/* Order of the series of a step from x = rate * step. */
 static int order_of(double x)
 {
 	int n = pound_floor_terms(x);
 	return n < ORDER_LEAST ? ORDER_LEAST : n > N ? N : n;
 }
 
-/* Derivatives n and n + 1 of left, right and overlap by the share of a step that is gone, and what makes the next: all scaled
- * to the step. */
+/* Derivatives n and n + 1 of left, right and overlap by the elapsed fraction of a step, and the coefficients of the recurrence for
+ * the next, scaled to the step. */
 struct body_terms {
 	double u[3], w[3];
 	double c[2], k[2], force[2], increase[2]; /* of each body */
@@ -194,7 +194,7 @@ static struct body_terms terms_of(const struct pound_task *task, const struct po
 	return m;
 }
 
-/* Derivative n of what the ground and its branch do to a body. */
+/* Derivative n of a body's forcing by the ground and the offset of its branch. */
 static inline double forcing(const struct body_terms *m, int i, int n)
 {
 	return n == 0 ? m->force[i] : n == 1 ? m->increase[i] : 0;
@@ -238,11 +238,11 @@ static void series_contact(struct body_series *s, struct body_terms m)
 
 /* ---- quasi-static contact ---- */
 
-/* How large the acceleration of a contact's own swing may be, over what the bodies' are made of, to be left out: a rounding.
+/* Largest negligible acceleration of a contact's own oscillation, over the terms of the bodies' accelerations: a rounding.
  *
- * Where its losses do not end it within a sample, rounding keeps it alive without end, and more is left out.  A swing adds to
- * velocities by 1/rate_touch, where the bodies' own accelerations add by 1/rate: what is left out of these is a rounding, and
- * omega/rate times that of an oscillator of omega on the floor. */
+ * If losses do not damp the oscillation within a sample, rounding errors sustain it, and more is neglected.  It changes velocities
+ * by its acceleration over rate_touch, the bodies' own accelerations by theirs over rate: the neglected part of the velocities is a
+ * rounding, and of the response of an oscillator on the floor with frequency omega it is omega/rate roundings. */
 static double swing_nothing(const struct pound_floor_motion *motion)
 {
 	const struct pound_task *task = motion->task;
@@ -251,9 +251,9 @@ static double swing_nothing(const struct pound_floor_motion *motion)
 	                         : fmin(NOTHING_BESIDE * motion->rate_touch / motion->rate, SWING_MOST);
 }
 
-/* Whether a contact may be quasi-static: its overlap is neither fast nor accelerated, as the swinging one is all the time.
+/* Whether a contact may be quasi-static: the acceleration of its overlap is small (series_quasi_static then checks the rate).
  *
- * Returns  terms  what the accelerations of both bodies are made of, but for the contact's, added up [m/s2]
+ * Returns  terms  sum of the magnitudes of all terms of both bodies' accelerations, without the contact's [m/s2]
  */
 static bool may_be_quasi_static(const struct pound_floor_motion *motion,
                                 const struct pound_instant_of_task *at, double *terms)
@@ -273,18 +273,18 @@ static bool may_be_quasi_static(const struct pound_floor_motion *motion,
 	       fmax(4 * slow * slow, swing_nothing(motion)) * *terms;
 }
 
-/* Series of a quasi-static contact: its overlap follows what presses the bodies on each other, and its own swing adds
- * no more than a rounding.
+/* Series of a quasi-static contact: its overlap follows the force between the bodies, and its own oscillation is below
+ * a rounding.
  *
- * Given    terms    as may_be_quasi_static has it;  s: its order and step
- * Returns  value   false: it is not quasi-static; s is not to be used
+ * Given    terms    from may_be_quasi_static;  s: its order and step
+ * Returns  value   false: not quasi-static; s is invalid
  *
  *   w = (m1 u1 + m2 u2)/(m1 + m2)     w'' = (r b1 + b2)/(1 + r)     r = m1/m2
  *   p'' = b1 - b2 - (1 + r) (K p + C p')
  *
- * with the accelerations b1, b2 of the bodies without their contact.  The overlap is that part of the solution which has a
- * power series as short as that of w: its coefficients follow from those above, down from the last.  What it adds to b1 and
- * b2 is by (rate/W)^2 less than what they are made of, so that few rounds suffice.
+ * with the accelerations b1, b2 of the bodies without their contact.  The overlap is the solution whose power series is as short
+ * as the series of w: each coefficient follows from the next two, from the last downwards.  Its contribution to b1 and b2 is
+ * smaller than their terms by (rate/W)^2, so that few rounds suffice.
  */
 static bool series_quasi_static(struct body_series *s, const struct pound_floor_motion *motion,
                                 const struct pound_instant_of_task *at, double terms)
@@ -297,7 +297,7 @@ static bool series_quasi_static(struct body_series *s, const struct pound_floor_
 	const double rate0 = (m.ratio * m.w[0] + m.w[1]) / m.both;
 	const int order = s->order;
 	double u[2][N + 1], w[2][N + 1], p[N + 2] = {m.u[2]}, q[N + 2] = {0}, closing[N + 1], last = 0;
-	// the first round has the bodies go along with an overlap that stays: what it finds takes another to reach them
+	// round 0 moves the bodies with a constant overlap; the overlap that it finds enters their motion in round 1
 	for (int round = 0; round < SETTLED_ROUNDS && (round < 2 || p[0] != last); round++) {
 		double mean = w0, rate = rate0;
 		last = p[0];
@@ -335,16 +335,16 @@ static bool series_quasi_static(struct body_series *s, const struct pound_floor_
 
 /* ---- the next series ---- */
 
-/* How far a series reaches of a time that is left. */
+/* Step of a series within the remaining time. */
 static double step_length(double left, double rate)
 {
 	double reach = rate > 0 ? REACH / rate : DBL_MAX, steps = left / reach;
 	return steps <= 1 ? left : steps > 2 ? reach : 0.5 * left;
 }
 
-/* The series from an instant on: over all of the time that is left, or as far as it reaches.
+/* The series from an instant on: over all of the remaining time, or as far as it is accurate.
  *
- * Valid    to rounding: REACH^n/n! is below that at the first term left out
+ * Valid    to rounding: REACH^n/n! is below rounding at the first neglected term
  */
 static void series_next(struct body_series *s, const struct pound_floor_motion *motion,
                         const struct pound_instant_of_task *at, double left)
@@ -362,7 +362,7 @@ static void series_next(struct body_series *s, const struct pound_floor_motion *
 	(at->touching ? series_contact : series_separated)(s, terms_of(motion->task, at, s->step));
 }
 
-/* Moves the state of an instant to the end of a series: terms are added up, the smallest first. */
+/* Moves the state of an instant to the end of a series; terms are summed from the smallest. */
 static void instant_move(struct pound_instant_of_task *at, const struct body_series *s)
 {
 	double *const u[3] = {&at->u[0], &at->u[1], &at->overlap};
@@ -380,7 +380,7 @@ static void instant_move(struct pound_instant_of_task *at, const struct body_ser
 
 /* ---- pieces ---- */
 
-/* Number of a stiffness in a stretch; -1: there are too many. */
+/* Index of a stiffness in a stretch; -1: there are too many. */
 static int map_of(struct pound_floor_stretch *stretch, double stiffness, double damping, double step)
 {
 	int m = 0;
@@ -406,7 +406,7 @@ static int map_of(struct pound_floor_stretch *stretch, double stiffness, double 
 	return m;
 }
 
-/* Makes room for another piece. */
+/* Makes space for another piece. */
 static void stretch_room(struct pound_floor_motion *motion)
 {
 	struct pound_floor_stretch *stretch = motion->stretch;
@@ -431,7 +431,7 @@ struct pound_floor_piece *pound_floor_piece_add(struct pound_floor_motion *motio
 	return piece;
 }
 
-/* One more piece of the left body. */
+/* Adds a piece of the left body. */
 static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
                                             const struct pound_instant_of_task *at, double step)
 {
@@ -441,9 +441,9 @@ static struct pound_floor_piece *piece_next(struct pound_floor_motion *motion,
 	return piece;
 }
 
-/* The floor over a sample of free motion.
+/* Adds the piece of the floor over a sample of free motion.
  *
- * Given    map  number of its stiffness
+ * Given    map  index of its stiffness
  */
 static void free_motion_add(struct pound_floor_motion *motion, int map)
 {
@@ -465,7 +465,7 @@ static void free_motion_add(struct pound_floor_motion *motion, int map)
 	}
 }
 
-/* The floor over a series. */
+/* Adds the piece of the floor over a series. */
 static void series_add(struct pound_floor_motion *motion, const struct pound_instant_of_task *at,
                        const struct body_series *s)
 {
@@ -479,12 +479,12 @@ static void series_add(struct pound_floor_motion *motion, const struct pound_ins
 	piece->order = order > piece->order ? order : piece->order;
 }
 
-/* The floor from the last instant on. */
+/* Adds the pieces of the floor from the last instant on. */
 static void interval_add(struct pound_floor_motion *motion, double length)
 {
 	struct pound_instant_of_task at = motion->from;
 	struct body_series s;
-	double gone = 0; // beside the time it would lose its digits
+	double gone = 0; // summed from 0: added to the time it would lose digits
 	for (int steps = 0; !motion->status && !pound_stopped(motion->stop); steps++) {
 		stretch_room(motion);
 		series_next(&s, motion, &at, length);
@@ -529,7 +529,7 @@ void pound_floor_observe(void *of, const struct pound_instant_of_task *instant)
 	motion->from = *instant;
 }
 
-/* Fastest of the motion in contact [rad/s]; past critical damping it is the faster of two roots.
+/* Fastest rate of the motion in contact [rad/s]; beyond critical damping the faster of two roots.
  *
  * Given    rate  of the bodies
  */
@@ -550,7 +550,7 @@ static double rate_touch(const struct pound_task *task, double rate)
 void pound_floor_start(struct pound_floor_motion *motion)
 {
 	const struct pound_task *task = motion->task;
-	assert(!task->contact || task->force == POUND_FORCE_LINEAR); // others run as chains
+	assert(!task->contact || task->force == POUND_FORCE_LINEAR); // other forms run as chains
 	motion->status = POUND_OK;
 	motion->rate = motion->jump = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {

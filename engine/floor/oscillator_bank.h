@@ -12,12 +12,12 @@ enum {
 /* Oscillators z'' + 2 xi w z' + w^2 z = -a, one set for each drive a; arrays in whole groups, 64-byte aligned. */
 struct pound_bank {
 	int n_groups;
-	int n_drives;   /* 1: the floor alone */
+	int n_drives;   /* 1: the floor only */
 	double damping; /* xi  [0, 1) */
-	double radians; /* w * segment at most, at most 1.5 */
+	double radians; /* largest w * segment, at most 1.5 */
 	const struct pound_segment_powers *powers;
 	const double *omega;                       /* [rad/s]  > 0 */
-	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* now [m], [m/s] */
+	double *z[POUND_DRIVES], *v[POUND_DRIVES]; /* current [m], [m/s] */
 	double *top[POUND_DRIVES];                 /* largest |z| so far [m] */
 };
 
@@ -31,7 +31,7 @@ struct pound_bank_input {
 bool pound_oscillator_bank_lanes(int lanes, const struct pound_bank *bank,
                                  const struct pound_bank_input *input, void *scratch);
 
-/* oscillator_bank.inl, compiled once for each */
+/* oscillator_bank.inl, compiled for each lane count */
 void pound_oscillator_bank_w8(const struct pound_bank *bank, const struct pound_bank_input *input,
                               void *scratch);
 void pound_oscillator_bank_w4(const struct pound_bank *bank, const struct pound_bank_input *input,

@@ -1,16 +1,16 @@
-/* oscillator_bank.inl - oscillators on a floor, driven by its pieces exactly, their largest displacements between steps too.
+/* oscillator_bank.inl - oscillators on a floor, integrated exactly over its pieces, and their largest displacements.
  *
- * 1. A piece is cut into 2^L equal segments, so that w times a segment is at most 1.5 radians and a power series of the
- *    oscillator ends in rounding; L is that of the fastest of a group of eight, which go through everything together.
- * 2. A whole sample of free motion is linear in the oscillator's state and four numbers of the floor's, with maps
- *    that are made once; any other piece is done by the series themselves.
- * 3. What an oscillator's energy and the floor's acceleration allow proves of most pieces that no new largest displacement
- *    lies inside.  Of the others each segment is looked at: the cubic through both of its ends, widened by the bound of its error,
- *    proves the same; where it does not, the velocity's roots are polished on the series.
+ * 1. A piece is divided into 2^L equal segments, so that w times a segment is at most 1.5 radians and a power series of the
+ *    oscillator ends in rounding; the fastest of a group of eight sets L, and the group shares all steps.
+ * 2. A whole sample of free motion is linear in the oscillator's state and in four state numbers of the floor, by maps
+ *    that are computed once; any other piece is integrated by the series.
+ * 3. Bounds from an oscillator's energy and the floor's acceleration prove for most pieces that no new largest displacement
+ *    lies inside.  In the others each segment is checked: the cubic through both of its ends plus its error bound may prove
+ *    the same; if not, the roots of the velocity are refined on the series.  So maxima between steps are found, too.
  *
  * | z, v | displacement and velocity of an oscillator |   | w, xi | frequency and damping |   | x | w times a segment |
- * | a, A | the floor's acceleration and its largest magnitude over a piece; A', A'' of its derivatives |
- * | h | the length of a piece |   | y | velocity in a segment's own time 0 .. 1 | */
+ * | a, A | the floor's acceleration and its bound over a piece; A', A'' bounds of its derivatives |
+ * | h | the length of a piece |   | y | velocity in the segment's time 0 .. 1 | */
 #include "engine/floor/oscillator_bank.h"
 
 #include <assert.h>
@@ -25,11 +25,10 @@ enum {
 	DERIVATIVES = POUND_SEGMENT_DERIVATIVES,
 	SEGMENTS_MAX = POUND_SEGMENTS, /* of a sample that has maps */
 	SEGMENTS_LIMIT = 1 << 24,
-	POLISH =
-	    3, /* rounds of Newton from the cubic's extremum; it misses by 1e-2, near critical damping by more */
+	POLISH = 3, /* Newton steps from the cubic's extremum, whose error is 1e-2, near critical damping more */
 };
 
-/* Squares below this have lost digits, and prove nothing. */
+/* Squares below this have lost digits and prove nothing. */
 static const double SQUARES_LEAST = 0x1p-1000;
 
 struct state {
@@ -40,55 +39,55 @@ struct state {
 struct group {
 	vd omega[G], per_omega[G];
 	double omega_max, damping;
-	bool slow; /* the fastest turns by a radian at most in a sample */
+	bool slow; /* the fastest has w times a sample <= 1 */
 	struct state s[POUND_DRIVES];
 };
 
-/* One of n equal segments of a piece; all motions below are in its time 0 .. 1. */
+/* One of n equal segments of a piece; motions below are in its time 0 .. 1. */
 struct segment {
 	int n;
 	double step;          /* [s] */
 	double x;             /* of the fastest of the group */
-	int terms;            /* of a series without a drive, by the fastest of the group */
+	int terms;            /* of a series without a drive, for the fastest of the group */
 	vd damp[G], stiff[G]; /* -2 xi x, -x^2 */
 };
 
-/* What drives oscillators over a piece: coefficients of powers of its own time  (order + 1, with room for DERIVATIVES) */
+/* What drives oscillators over a piece: coefficients of powers of the piece's time  (order + 1, space for DERIVATIVES) */
 struct drive {
 	const double *c;
 	int order; /* -1: none */
-	int terms; /* of a series that it drives, at most */
+	int terms; /* maximum of a series that it drives */
 };
 
-/* Derivatives of a drive where a segment begins, times -step^2; those beyond its order are 0. */
+/* Derivatives of a drive at the start of a segment, times -step^2; 0 beyond its order. */
 struct force {
 	alignas(64) double of[DERIVATIVES];
 	int terms; /* of a series that it drives */
 };
 
-/* What a time adds to a state without a drive: z grows by zz z + zv v, v by vz z + vv v. */
+/* Increments of a state over a time without a drive: of z zz z + zv v, of v vz z + vv v. */
 struct passage {
 	vd zz[G], zv[G], vz[G], vv[G];
 };
 
-/* what the four numbers of a floor in free motion add to it */
+/* increments of a state per unit of each of the four state numbers of a floor in free motion */
 struct drive_map {
 	vd z[4][G], v[4][G];
 };
 
-/* How much the cubic through the ends of a segment may miss by, over |z| and |v| at its start and the bounds A, A', A'' of the
+/* Error bound of the cubic through the ends of a segment: factors of |z| and |v| at its start and of the bounds A, A', A'' of the
  * drive over the piece. */
 struct cubic_error {
 	vd on_z, on_v, on_bound[3];
 };
 
-/* Maps of a whole sample and of its segments, and how far an oscillator may go within the sample: see risk_of_sample. */
+/* Maps of a whole sample and of its segments, and factors of the bound in risk_of_sample. */
 struct maps {
 	struct segment whole, segment;
 	struct passage of_whole, of_segment;
 	struct drive_map drive_of_whole[POUND_FLOOR_MAPS], drive_of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
-	vd on_start[G], on_rate[G]; /* of a and its rate at the start of the sample */
-	vd on_bound[3][G];          /* of A, A', A'' */
+	vd on_start[G], on_rate[G]; /* factors of a and its rate at the start of the sample */
+	vd on_bound[3][G];          /* factors of A, A', A'' */
 	struct cubic_error miss_of_whole[G];
 };
 
@@ -103,8 +102,8 @@ static int larger(int a, int b)
 	return a > b ? a : b;
 }
 
-/* Terms after which x^n/n! is below rounding, as pound_floor_terms() has them: all are looked at, as no branch foresees where
- * to stop. */
+/* Terms after which x^n/n! is below rounding, as pound_floor_terms(): all thresholds are compared, as an early exit would be
+ * mispredicted. */
 LANE_INLINE int terms_of(double x)
 {
 	int n = 0;
@@ -113,7 +112,7 @@ LANE_INLINE int terms_of(double x)
 	return n;
 }
 
-/* Parts that a step is cut into so that the fastest oscillator turns by `radians` at most in each: a power of two. */
+/* Number of segments of a step, a power of two, so that omega_max times a segment is at most `radians`. */
 static int segments_of(double omega_max, double step, double radians)
 {
 	int n = 1;
@@ -138,7 +137,7 @@ LANE_INLINE void segment_init(struct segment *p, const struct group *g, double l
 
 /* ---- forces ---- */
 
-/* Coefficients of segment j of n equal ones in its own time, n a power of two, put into `room`. */
+/* Coefficients of a polynomial in the time of segment j of n equal segments, n a power of two, put into `room`. */
 static void coefficients_of_segment(const double *a, int order, int j, int n, double *room)
 {
 	double share = 1.0 / n, from = j * share, power = 1;
@@ -151,17 +150,17 @@ static void coefficients_of_segment(const double *a, int order, int j, int n, do
 		room[k] *= power;
 }
 
-/* A drive over segments p of a piece.
+/* A drive over the segments p of a piece.
  *
  * Given    c      its coefficients  (order + 1)
  *          bound  of its magnitude
  *
- * Term n of a series is of the last two coefficients' making, times x/n for every one behind the (order + 2)nd.
+ * Beyond order + 2 a term of a series follows from the last two coefficients, and term n is x/n of the one before it.
  */
 LANE_INLINE struct drive drive_of(const double *c, int order, const struct segment *p, double bound)
 {
 	struct drive drive = {.c = c, .order = order, .terms = larger(p->terms, order + 2)};
-	// even and odd terms of an oscillator without damping do not mix
+	// two coefficients: without damping, even and odd terms are independent
 	double last = order < 0 ? 0 : fmax(fabs(c[order]), order > 0 ? fabs(c[order - 1]) : 0);
 	for (int n = order + 3; n <= TERMS && last > 0x1p-54 * bound; n++) {
 		last *= p->x * POUND_SHARE[n - 1];
@@ -184,7 +183,7 @@ LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powe
 		c = room, n = 1, j = 0;
 	}
 	force->terms = drive->terms;
-	// where a piece begins every power has one derivative
+	// at the start of a piece every power has one derivative that is not 0
 	for (int m = 0; m < DERIVATIVES && j == 0; m += W) {
 		const vm kept = vless(lanes_load(&powers->number[m]), vsplat(order + 1));
 		const vd derivative = lanes_load(&c[m]) * lanes_load(&powers->start[n][m]);
@@ -200,13 +199,13 @@ LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powe
 
 /* ---- series ---- */
 
-/* What a segment adds to a group: roundings of an increment do not add up over thousands of samples as those of a factor near 1
- * would.
+/* Increments of a group over a segment: unlike roundings of a factor near 1, roundings of an increment do not accumulate over
+ * thousands of samples.
  *
  * Given    z, y  at the start
- * Returns  z, y  by how much they grow
+ * Returns  z, y  their increments
  *
- * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     z grows by sum d_n/n!, y by sum d_n+1/n!, n > 0
+ * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     increments: sum d_n/n!, sum d_n+1/n!, n > 0
  */
 LANE_INLINE void series_pass(const struct segment *p, const struct force *force, vd z[G], vd y[G])
 {
@@ -247,7 +246,7 @@ LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 /* one vector of a group over a segment of a piece */
 struct stage {
 	const struct segment *segment;
-	int i;               /* of the vector */
+	int i;               /* index of the vector */
 	const double *bound; /* A, A', A'' over the piece */
 	vd z, v, z1, v1;     /* at the start and at the end */
 };
@@ -258,7 +257,7 @@ struct series {
 	vd z[TERMS + 1], y[TERMS + 1], slope[TERMS + 1]; /* slope: derivative of y */
 };
 
-/* |z| at the root of the velocity that Newton's method finds from t; whatever it finds is a value that z takes. */
+/* |z| at the root of the velocity that Newton's method finds from t; an inexact root still gives a value that |z| takes. */
 LANE_INLINE vd polished(const struct series *s, vd t)
 {
 	vd zero = vsplat(0), one = vsplat(1);
@@ -270,7 +269,7 @@ LANE_INLINE vd polished(const struct series *s, vd t)
 	return vabs(series_at(s->z, s->terms, t));
 }
 
-/* The larger of |z| at the extrema inside a segment, from both roots of the velocity of the cubic through its ends, and of top;
+/* The maximum of top and of |z| at the extrema inside a segment, searched from both extrema of the cubic through its ends;
  * in the lanes of risk. */
 LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force, vm risk, vd top)
 {
@@ -287,7 +286,7 @@ LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force,
 	}
 	vd y0 = s.y[0], y1 = stage->v1 * p->step, rise = stage->z1 - stage->z;
 	vd a = 3.0 * rise - 2.0 * y0 - y1, b = y1 + y0 - 2.0 * rise;
-	// squares are taken: what would vanish in them is raised by a power of two
+	// scaled by a power of two, so that squares of small values do not underflow
 	vd large = vmax(vmax(vabs(a), vabs(b)), vabs(y0));
 	vd raise = vselect(vless(large, vsplat(0x1p-400)), vsplat(0x1p600), one);
 	a = a * raise, b = b * raise, y0 = y0 * raise;
@@ -295,7 +294,7 @@ LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force,
 	vd q = -(a + vselect(vless(a, zero), -root, root));
 	vd t[2] = {q / vselect(vequal(b, zero), one, 3.0 * b), y0 / vselect(vequal(q, zero), one, q)},
 	   most = zero;
-	// most often one of them lies inside; the cubic's may be a little off
+	// usually one of the roots lies inside; the margin is for the error of the cubic
 	for (int i = 0; i < 2; i++) {
 		vm inside = vless(vsplat(-0.1), t[i]) & vless(t[i], vsplat(1.1)) & risk;
 		if (vany(inside))
@@ -319,7 +318,7 @@ LANE_INLINE struct cubic_error cubic_error_of(const struct segment *p, const str
 	    .on_bound = {(on_e + both) * scale, damp * (scale * share), vsplat(scale * share * share)}};
 }
 
-/* Lanes in which |z| may have a new largest value inside a segment, by the cubic through its ends; top has that at the end. */
+/* Lanes in which |z| may have a new maximum inside a segment, by the cubic through its ends; top includes |z| at the end. */
 LANE_INLINE vm risk_of_segment(const struct stage *stage, const struct cubic_error *miss, vd top)
 {
 	const vd third = vsplat(stage->segment->step * (1.0 / 3));
@@ -332,9 +331,9 @@ LANE_INLINE vm risk_of_segment(const struct stage *stage, const struct cubic_err
 
 /* ---- any piece ---- */
 
-/* Lanes in which |z| may have a new largest value inside a piece of length h; any: there are some.
+/* Lanes in which |z| may have a new maximum inside a piece of length h; value: there are any.
  *
- *   E^2 = z^2 + (v/w)^2     E' <= |a|/w, with any damping     |z| <= E <= E0 + A h/w
+ *   E^2 = z^2 + (v/w)^2     E' <= |a|/w for any damping     |z| <= E <= E0 + A h/w
  */
 LANE_INLINE bool risk_of_piece(const struct group *g, const struct state *s, double step, double bound,
                                vm risk[G])
@@ -349,7 +348,7 @@ LANE_INLINE bool risk_of_piece(const struct group *g, const struct state *s, dou
 	return any;
 }
 
-/* A group over any piece, driven by one of the drives: its segments p, one after the other. */
+/* Integrates a group over any piece under one of the drives, segment by segment. */
 LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_bank_input *input,
                             const struct pound_floor_piece *piece, enum pound_drive drive, struct group *g,
                             const struct segment *p)
@@ -390,7 +389,7 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 
 /* ---- free motion ---- */
 
-/* What a segment does to oscillators without a drive. */
+/* Increments of oscillators over a segment without a drive. */
 static void passage_fill(struct passage *passage, const struct segment *p)
 {
 	const struct force none = {.terms = p->terms};
@@ -407,7 +406,7 @@ static void passage_fill(struct passage *passage, const struct segment *p)
 	}
 }
 
-/* Moves a state, to which a drive adds more_z and more_v. */
+/* Advances a state by a passage and by the increments more_z and more_v of a drive. */
 LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd more_z, vd more_v)
 {
 	more_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, more_z));
@@ -416,7 +415,7 @@ LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd m
 	*v = *v + more_v;
 }
 
-/* Appends a segment to a passage: what a displacement and a velocity of 1 have grown by. */
+/* Appends a segment to a passage, by the increments of a unit displacement and a unit velocity. */
 LANE_INLINE void passage_append(struct passage *all, const struct passage *m, int i)
 {
 	const vd z = 1.0 + all->zz[i], v = 1.0 + all->vv[i];
@@ -426,7 +425,7 @@ LANE_INLINE void passage_append(struct passage *all, const struct passage *m, in
 	all->zv[i] = all->zv[i] + zv, all->vv[i] = all->vv[i] + vv;
 }
 
-/* What the floor of a stiffness does to oscillators over the segments of a sample, and over all of them. */
+/* Increments of oscillators on a floor of one stiffness, over each segment of a sample and over the whole sample. */
 static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *bank,
                            const struct pound_bank_input *input)
 {
@@ -459,7 +458,7 @@ static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *ba
 	}
 }
 
-/* All maps of a sample, of every stiffness of a stretch. */
+/* All maps of a sample, for every stiffness of a stretch. */
 static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct group *g,
                       const struct pound_bank_input *input, int segments)
 {
@@ -485,12 +484,12 @@ static void maps_fill(struct maps *maps, const struct pound_bank *bank, const st
 	}
 }
 
-/* Lanes in which |z| may have a new largest value inside a whole sample h of free motion.
+/* Lanes in which |z| may have a new maximum inside a whole sample h of free motion.
  *
- * Given    bound, start, rate  of the drive: A, A', A'', a and its rate where the sample begins, by the share of the sample
+ * Given    a  the drive: bounds A, A', A'', coefficients a and its rate at the start, by the elapsed fraction of the sample
  *
- * Slow oscillators, w h <= 1, as risk_of_piece has them.  Fast ones follow the floor: with y = z + a/w^2
- *   y'' + 2 xi w y' + w^2 y = a''/w^2 + 2 xi a'/w     E of y grows by A''/(h w^3) + 2 xi A'/w^2 at most, |z| <= E + A/w^2
+ * Slow oscillators, w h <= 1: as in risk_of_piece.  Fast ones follow the floor: with y = z + a/w^2
+ *   y'' + 2 xi w y' + w^2 y = a''/w^2 + 2 xi a'/w     E of y grows by at most A''/(h w^3) + 2 xi A'/w^2, |z| <= E + A/w^2
  */
 LANE_INLINE vm risk_of_sample(const struct maps *m, const struct group *g, const struct state *s, int i,
                               const struct pound_polynomial *a)
@@ -503,7 +502,7 @@ LANE_INLINE vm risk_of_sample(const struct maps *m, const struct group *g, const
 	return vless(left * vabs(left), vfma(z, z, vfma(v, v, vsplat(SQUARES_LEAST))));
 }
 
-/* what drives oscillators on a contact in free motion */
+/* the contact's drive in free motion */
 static const struct pound_polynomial none = {{0}, {0}};
 
 /* one vector of a group over a whole sample */
@@ -516,7 +515,7 @@ struct sample_place {
 	int i;
 };
 
-/* The largest |z| of a sample, segment by segment, in the lanes of risk; else top. */
+/* The largest |z| of a sample, by its segments, in the lanes of risk; else top. */
 LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd top)
 {
 	const int i = at->i;
@@ -550,10 +549,10 @@ LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive,
 	return top;
 }
 
-/* A group over a whole sample by maps; the floor's drive has them, the contact gives none.
+/* Integrates a group over a whole sample by maps; the contact's drive is 0.
  *
- * What proves that there is no new largest displacement: where all are slow, the cubic through the ends of the sample; else what they may
- * swing to, and if that does not, the cubic.
+ * A new largest displacement is excluded by the cubic through the ends of the sample if all oscillators are slow; else by
+ * risk_of_sample, and where this does not suffice, by the cubic.
  */
 LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, struct group *g)
 {
@@ -614,7 +613,7 @@ static void group_store(const struct group *g, const struct pound_bank *bank, in
 		}
 }
 
-/* One group of oscillators over a whole stretch. */
+/* Integrates one group of oscillators over a whole stretch. */
 static void group_move(const struct pound_bank *bank, const struct pound_bank_input *input, int at,
                        struct maps *maps)
 {
@@ -645,12 +644,12 @@ static void group_move(const struct pound_bank *bank, const struct pound_bank_in
 	group_store(&g, bank, at);
 }
 
-/* Takes all oscillators of a bank over the pieces of a stretch.
+/* Integrates all oscillators of a bank over the pieces of a stretch.
  *
- * Given    bank     state and largest displacements, moved on
+ * Given    bank     state and largest displacements, updated
  *          scratch  POUND_SPECTRUM_SCRATCH bytes, 64-byte aligned
  *
- * Valid    exact but for rounding; bits of an oscillator depend on its group, not on the lane count
+ * Valid    exact except for rounding; the bits of an oscillator depend on its group, not on the lane count
  * Test     unit_oscillator_bank
  */
 void POUND_OSCILLATOR_BANK(const struct pound_bank *bank, const struct pound_bank_input *input, void *scratch)

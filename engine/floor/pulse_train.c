@@ -1,4 +1,4 @@
-/* pulse_train.c - floor spectra of idealised impacts, in closed form. */
+/* pulse_train.c - floor spectra of idealized impacts, in closed form. */
 #include "engine/floor/pulse_train.h"
 
 #include <math.h>
@@ -6,11 +6,11 @@
 #include "engine/exact/task.h"
 #include "engine/numeric/elementary.h"
 
-enum { LOOK_EVERY = 4096 /* pulses between two looks at the flag to stop by */ };
+enum { LOOK_EVERY = 4096 /* pulses between two checks of the stop flag */ };
 
 static const double PI = 3.14159265358979323846;
 
-/* Line of a single pulse.
+/* Spectrum of a single pulse, a line through the origin.
  *
  *   PSA = v1 w exp(-xi pi/2)
  *
@@ -22,8 +22,8 @@ double pound_pulse_train_line(const struct pound_pulse_train *dirac, double omeg
 	return dirac->speed * omega * pound_elementary_exp(-0.5 * PI * xi);
 }
 
-/* What N pulses would give if each found the oscillator on its way up: the peaks of the train at the frequencies 2 n f,
- * where w spacing = 2 n pi, and a line through them elsewhere.
+/* Spectrum of N pulses that all act in phase with the oscillator: the peaks of the train's spectrum at the frequencies 2 n f,
+ * where w spacing = 2 n pi, and a curve through these peaks elsewhere.
  *
  *   PSA = v1 w exp(-xi pi/2) (1 - E^N)/(1 - E),   E = exp(-xi w spacing)
  *
@@ -39,9 +39,9 @@ double pound_pulse_train_peaks(const struct pound_pulse_train *dirac, double ome
 	return pound_pulse_train_line(dirac, omega, xi) * sum;
 }
 
-/* Angle in [0, pi] of a sine >= 0 and a cosine.
+/* Angle in [0, pi] from its sine >= 0 and cosine.
  *
- * With d = sin(angle - guess) the arc sine is d + d^3/6 but for 3 d^5/40: 0.34 rad at first, 4e-4, below rounding.
+ * With d = sin(angle - guess) the arc sine is d + d^3/6 + 3 d^5/40 ...: errors of 0.34 rad, 4e-4, then below rounding.
  */
 static double angle(double sine, double cosine)
 {
@@ -54,10 +54,10 @@ static double angle(double sine, double cosine)
 	return guess;
 }
 
-/* First extremum of free motion from (z, v/w): |z| there, 0 if it comes after `limit` of w_d t or is below `top`.
+/* First extremum of free motion from (z, v/w): |z| there, 0 if it is after w_d t = `limit` or below `top`.
  *
- * Its velocity is 0 at the angle of (z + xi v/w, s v/w), s = sqrt(1 - xi^2), taken upwards.  Without damping on the way it would
- * be as large as `most`, for which no angle is needed: most of a train's are known not to be the largest by that.
+ * The velocity is 0 at the polar angle of (z + xi v/w, s v/w), s = sqrt(1 - xi^2), sine taken positive.  `most` is the extremum
+ * without decay until then; it needs no angle and excludes most extrema of a train.
  */
 static double extremum(double z, double v, double xi, double s, double limit, double top)
 {
@@ -77,11 +77,11 @@ static double extremum(double z, double v, double xi, double s, double limit, do
 
 /* Spectrum of N equal velocity steps of the floor, one every `spacing`, and of the free motion after the last.
  *
- * The oscillator's relative velocity jumps by v1 at each pulse and it moves freely between them.  Amplitudes only fall, so
- * the largest displacement is at the first extremum after a pulse, or where the next pulse finds it.
+ * The oscillator's relative velocity jumps by v1 at each pulse; its motion between pulses is free.  Amplitudes decay there, so
+ * the largest displacement is at the first extremum after a pulse, or at the next pulse.
  *
  * Source   the paper, section 6.1
- * Valid    exact but for rounding; NAN when it was stopped
+ * Valid    exact except for rounding; NAN if stopped
  * Test     unit_pulse_train: a_train_of_pulses_gives_the_exact_values
  */
 double pound_pulse_train_train(const struct pound_pulse_train *dirac, double omega, double xi)

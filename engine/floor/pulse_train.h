@@ -1,4 +1,4 @@
-/* pulse_train.h - floor spectra of idealised impacts: velocity steps of the floor, one or many alike. */
+/* pulse_train.h - floor spectra of idealized impacts: one or several equal velocity steps of the floor. */
 #ifndef PULSE_TRAIN_H
 #define PULSE_TRAIN_H
 
@@ -9,7 +9,7 @@ struct pound_pulse_train {
 	double speed;            /* impulse over the floor's mass [m/s] */
 	double spacing;          /* half a period of the floor [s]  > 0 */
 	double pulses;           /* whole number, N */
-	const atomic_bool *stop; /* looked at throughout; NULL: never */
+	const atomic_bool *stop; /* polled throughout; NULL: none */
 };
 
 /* pseudo-accelerations at one frequency omega > 0 and damping xi in [0, 1)  [m/s2] */

@@ -1,13 +1,13 @@
-/* segment_powers.c - derivatives of powers where segments of a piece begin. */
+/* segment_powers.c - derivatives of powers at the starts of segments of a piece. */
 #include "engine/floor/segment_powers.h"
 
 #include <string.h>
 
-/* All segments of all powers of two.
+/* All segments, for each number n of segments that is a power of two.
  *
  *   t = (j + s)/n     d^m/ds^m t^k = k!/(k - m)! (j/n)^(k - m) n^-m  at s = 0
  *
- * Valid    exact but for rounding
+ * Valid    exact except for rounding
  * Test     unit_segment_powers
  */
 void pound_segment_powers_fill(struct pound_segment_powers *powers)

@@ -1,4 +1,4 @@
-/* segment_powers.h - derivatives of the powers of a polynomial over a piece where equal segments of the piece begin. */
+/* segment_powers.h - derivatives of powers of a piece's time at the starts of equal segments of the piece. */
 #ifndef SEGMENT_POWERS_H
 #define SEGMENT_POWERS_H
 
@@ -7,12 +7,12 @@
 #include "engine/floor/floor_pieces.h"
 
 enum {
-	POUND_SEGMENTS = 16,                          /* of a piece, at most; a power of two */
+	POUND_SEGMENTS = 16,                          /* maximum of a piece; a power of two */
 	POUND_SEGMENT_DERIVATIVES = POUND_FLOOR_ROOM, /* the 0th to the 23rd */
 };
 
-/* Segment j of n: [n + j][k][m] is the m-th derivative of t^k where it begins, t the piece's share of time and the segment's
- * own share that of the derivatives.  Of the first of n that of t^m is start[n][m], and all others are 0. */
+/* Segment j of n: [n + j][k][m] is d^m/ds^m t^k at the start of the segment; t is the elapsed fraction of the piece, s of the
+ * segment.  In segment 0 of n only the m-th derivative of t^m, start[n][m], is not 0. */
 struct pound_segment_powers {
 	alignas(64) double number[POUND_SEGMENT_DERIVATIVES]; /* 0, 1, 2, .. */
 	double start[POUND_SEGMENTS + 1][POUND_SEGMENT_DERIVATIVES];

@@ -10,9 +10,9 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The damping ratio xi in two modes, and about that between them.
+/* Rayleigh damping: ratio xi in two modes, somewhat less in modes between them.
  *
- *   c_i = 2 xi k_i/(wp + wq)     a0 = 2 xi wp wq/(wp + wq)     one storey: as by stiffness
+ *   c_i = 2 xi k_i/(wp + wq)     a0 = 2 xi wp wq/(wp + wq)     one storey: as by_stiffness
  *
  * Source   Chopra 2017, Dynamics of Structures, Eq. (11.4.11)
  */
@@ -26,14 +26,14 @@ static void rayleigh(const struct pound_building *building, const double *w, str
 		s->dashpot[i] = 2 * xi * s->stiffness[i] / (n == 1 ? p : p + q);
 }
 
-/* The damping ratio in the first mode, and more in the others as their frequency is higher. */
+/* The damping ratio in the first mode; in the others it grows in proportion to their frequency. */
 static void by_stiffness(const struct pound_building *building, const double *w, struct pound_storeys *s)
 {
 	for (int i = 0; i < s->n; i++)
 		s->dashpot[i] = 2 * pound_each_of(&building->damping_ratio, 0) * s->stiffness[i] / w[0];
 }
 
-/* Every storey as if it were an oscillator of its own: the paper, Figure 5. */
+/* Every storey has the dashpot of a single oscillator of its mass and stiffness: the paper, Figure 5. */
 static void by_storey(const struct pound_building *building, const double *w, struct pound_storeys *s)
 {
 	(void)w;
@@ -41,7 +41,7 @@ static void by_storey(const struct pound_building *building, const double *w, st
 		s->dashpot[i] = 2 * pound_each_of(&building->damping_ratio, i) * sqrt(s->mass[i] * s->stiffness[i]);
 }
 
-/* The damping ratio in every mode; of one storey a dashpot gives it. */
+/* The damping ratio in every mode; with one storey a dashpot does this. */
 static void modal(const struct pound_building *building, const double *w, struct pound_storeys *s)
 {
 	if (s->n == 1)
@@ -83,12 +83,12 @@ bool pound_damping_takes_each(int row)
 	return forms[row].each;
 }
 
-/* A building as its storeys, from what its document gives.
+/* Masses, stiffnesses and damping of the storeys of a building.
  *
- * Given    building   no rigid wall
+ * Given    building   not a rigid wall
  * Returns  storeys    (building->storeys)
  *
- * By frequency the profile is scaled: k_i = profile_i (2 pi f/w_1)^2, w_1 that of the profile.
+ * If the frequency is given, the profile is scaled: k_i = profile_i (2 pi f/w_1)^2, w_1 first frequency of the profile.
  *
  * Source   the project's design pages, buildings.md 1
  * Test     unit_building
@@ -115,16 +115,16 @@ void pound_building_storeys(const struct pound_building *building, struct pound_
 	forms[building->damping].dashpots(building, w, storeys);
 }
 
-/* The first mode of a building of initial stiffness.
+/* The first mode of a building with its initial stiffness.
  *
- * Given    building    no rigid wall
+ * Given    building    not a rigid wall
  * Returns  frequency   w    rad/s
- *          damping     xi   -       share of critical damping: what the dashpots take from the mode alone
+ *          damping     xi   -       damping ratio, from the diagonal term of modal damping
  *
  *   xi = phi^T C phi / (2 w phi^T M phi)
  *
- * It is the damping ratio of the document where the form of damping has it in the first mode; of other forms modes act on each
- * other through C, and it is the diagonal's.
+ * It equals the damping ratio of the document if the damping form prescribes the first mode; with other forms C couples the
+ * modes, and xi is from the diagonal term alone.
  *
  * Source   Chopra, Dynamics of Structures, 14.3 and 11.4
  * Test     unit_building: the_first_mode_has_the_damping_of_its_form

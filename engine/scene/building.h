@@ -4,15 +4,15 @@
 
 #include "engine/study.h"
 
-/* Of the storeys from the ground up, each with the floor above it. */
+/* Storeys from the ground up, each with the floor above it. */
 struct pound_storeys {
 	int n;
 	double mass[POUND_STOREYS_MAX];      /* [kg] */
 	double stiffness[POUND_STOREYS_MAX]; /* initial [N/m] */
 	double dashpot[POUND_STOREYS_MAX];   /* [N s/m] */
-	double mass_damping;                 /* damping by mass, of every floor [1/s] */
+	double mass_damping;                 /* mass-proportional damping of every floor [1/s] */
 	double frequency;                    /* of the first mode [rad/s] */
-	bool modal;                          /* the damping is of the modes, not of dashpots */
+	bool modal;                          /* damping is given per mode, not by dashpots */
 };
 
 void pound_building_storeys(const struct pound_building *building, struct pound_storeys *storeys);

@@ -1,16 +1,16 @@
-/* contact.c - the contact models, a row each: the branches of the force, and what restitution asks of its dashpot.
+/* contact.c - the contact models, one row each: branches of the force, and the dashpot for a restitution coefficient.
  *
- * m is the effective mass of the two sides, v the approach speed where the contact begins, e the restitution coefficient.
+ * m is the effective mass of the two sides, v the approach speed at the start of the contact, e the restitution coefficient.
  *
  *   z of K p + C q, K p^1.5 + c p^0.25 q:   C = 2 z sqrt(K m),   c = 2 x sqrt(K m),  x = sqrt5/2 z
  *   D of K p^a (1 + D q/v)
  *
- * `classic` are the formulas of the papers, `exact` make an isolated impact leave with e times the approach speed.  With
- * y = p^(5/4) and ds = (5/4) p^(1/4) dt the powers with p^0.25 dashpots are y'' + (8/5) x y' + (4/5) y = 0, so that they have the
- * closed forms of the straight ones.
+ * `classic`: the published formulas.  `exact`: an isolated impact separates with exactly e times the approach speed.  With
+ * y = p^(5/4) and ds = (5/4) p^(1/4) dt, K p^1.5 + c p^0.25 q becomes y'' + (8/5) x y' + (4/5) y = 0, so the closed forms of
+ * K p + C q apply.
  *
- * Adding a model: its row in models[], and its functions.  The row says which form its force has; a solver that cannot
- * integrate that form is refused where studies are read, and asserts it (solver.c). */
+ * Adding a model: its row in models[], and its functions.  The row names the form of the force; a study whose solver cannot
+ * integrate this form is refused when it is read, and the solver asserts it (solver.c). */
 #include "engine/scene/contact.h"
 
 #include <assert.h>
@@ -27,21 +27,21 @@ enum { CLASSIC, EXACT, CALIBRATIONS };
 
 /* ---- calibrations ---- */
 
-/* -ln e; the logarithm wants a normal number. */
+/* -ln e; the logarithm needs a normal number. */
 static double loss(double e)
 {
 	return -pound_elementary_log(fmax(e, DBL_MIN));
 }
 
-/* Damping ratio of a Kelvin-Voigt contact that gives a wanted coefficient of restitution.
+/* Damping ratio of a Kelvin-Voigt contact for a given restitution coefficient.
  *
  * Given    e      -    [0, 1]
  * Returns  value  -    [0, 1]; e = 0 gives the limit 1, no log of zero
  *
  *   zeta = -ln e / sqrt(pi^2 + (ln e)^2)
  *
- * Valid    Exact when contact lasts until the overlap is zero (the dashpot may pull at the end).  With release at
- *          zero force the realised restitution is e^(1 - 2 asin(zeta)/pi): 0.900 -> 0.902, 0.600 -> 0.632.
+ * Valid    Exact if contact lasts until the overlap is zero (the dashpot may pull at the end).  With release at
+ *          zero force the restitution becomes e^(1 - 2 asin(zeta)/pi): 0.900 -> 0.902, 0.600 -> 0.632.
  * Source   Anagnostopoulos 1988, Earthquake Eng. Struct. Dyn. 16, 443-456; the paper, Eq. (2)
  * Test     unit_contact
  */
@@ -49,12 +49,12 @@ static double kelvin_voigt(double e)
 {
 	if (e == 0)
 		return 1;
-	// below the least normal number zeta is 1 to 1e-5 all the same
+	// for e below the smallest normal number zeta is within 1e-5 of 1 anyway
 	double l = pound_elementary_log(fmax(e, DBL_MIN));
 	return -l / sqrt(PI * PI + l * l);
 }
 
-/* Damping ratio of a dashpot that acts on approach alone, as published.
+/* Damping ratio of a dashpot that acts only during approach, as published.
  *
  * Source   Mahmoud and Jankowski 2011, Eng. Struct. 33, 1547-1556
  */
@@ -74,7 +74,7 @@ static double viscoelastic_classic(double e)
 	return 4.5 * ROOT_5 * ((1 - e * e) / (e * (e * (9 * PI - 16) + 16)));
 }
 
-/* D of Hertzdamp: the energy lost by a spring without dashpot, to first order.
+/* D of Hertzdamp, to first order: energy loss along the motion of the spring without dashpot.
  *
  * Source   Muthukumar and DesRoches 2006, Earthquake Eng. Struct. Dyn. 35, 811-828
  */
@@ -85,7 +85,7 @@ static double ratio_classic(double e)
 
 /* atan(sqrt x)/sqrt x for x >= 0, artanh(sqrt -x)/sqrt -x below: one analytic function of x > -1.
  *
- *   x > 0   atan t = 2 atan(t/(1 + sqrt(1 + t^2))), twice: then t < 0.2
+ *   x > 0   atan t = 2 atan(t/(1 + sqrt(1 + t^2))), applied twice: then t < 0.2
  *   |x| < 0.04   1 - x/3 + x^2/5 - ...
  */
 static double arc_over(double x, double z)
@@ -106,18 +106,18 @@ static double arc_over(double x, double z)
 	return factor * sum;
 }
 
-/* -ln of the restitution of an isolated impact whose dashpot, of damping ratio z, acts on approach alone.
+/* -ln of the restitution of an isolated impact; its dashpot, of damping ratio z, acts only during approach.
  *
  *   z < 1   acos(z) z/sqrt(1 - z^2)       z > 1   acosh(z) z/sqrt(z^2 - 1)       z = 1   1
  *
- * both 2 z/(1 + z) times the arc of (1 - z)/(1 + z) over it.  Release at zero force gives twice that.
+ * both are 2 z/(1 + z) arc_over((1 - z)/(1 + z)).  A dashpot that always acts, with release at zero force, gives twice this.
  */
 static double approach_loss(double z)
 {
 	return 2 * z / (1 + z) * arc_over((1 - z) / (1 + z), z);
 }
 
-/* z whose approach_loss is l, by bisection: it grows with z. */
+/* z with approach_loss(z) = l, by bisection: the loss grows with z. */
 static double approach_for(double l)
 {
 	double low = DBL_MIN, high = 0x1p1022;
@@ -174,7 +174,7 @@ static double ratio_residual(double D, double e)
 	return sum;
 }
 
-/* D of K p^a (1 + D q/v) whose isolated impact has restitution e, whatever a > 0.
+/* D of K p^a (1 + D q/v) for restitution e of an isolated impact, the same for all a > 0.
  *
  *   D (1 + e) = ln((1 + D)/(1 - D e)),  0 < D < 1/e
  */
@@ -218,7 +218,7 @@ static void approach_begin(const struct pound_contact_law *law, struct pound_tou
 	at->on.direction = 1;
 }
 
-/* The dashpot acts on approach alone. */
+/* The dashpot acts only during approach. */
 static void approach_leave(const struct pound_contact_law *law, struct pound_touch *at, enum pound_edge edge,
                            double overlap)
 {
@@ -281,7 +281,7 @@ static void bilinear_leave(const struct pound_contact_law *law, struct pound_tou
                            double overlap)
 {
 	if (at->branch != FIRST) {
-		// the line that is left is the overlap itself, so that the branch starts on it to the last bit
+		// the edge where the branch starts is set to the overlap itself: equal to the last bit
 		const bool upper = at->branch == SECOND;
 		const double low = upper ? fmax(overlap - law->yield_overlap, 0) : overlap;
 		bilinear_elastic(law, at, low, upper ? overlap : overlap + law->yield_overlap);
@@ -299,11 +299,11 @@ static void bilinear_leave(const struct pound_contact_law *law, struct pound_tou
 static const struct model {
 	const char *name;
 	const char *text;                      /* one line of documentation */
-	enum pound_force force;                /* what a solver has to be able to do */
+	enum pound_force force;                /* what a solver must be able to integrate */
 	const char *reads;                     /* members of a study beside `model` and `gap_m`, between spaces */
 	double (*classic)(double restitution); /* z, x or D; NULL: no dashpot */
 	double (*exact)(double restitution, bool tension);
-	bool zero[CALIBRATIONS]; /* there is a dashpot for restitution 0; exact: if the force may pull */
+	bool zero[CALIBRATIONS]; /* restitution 0 has a finite dashpot; exact: if the force may pull */
 	void (*begin)(const struct pound_contact_law *, struct pound_touch *,
 	              double rate); /* NULL: velocities jump */
 	void (*leave)(const struct pound_contact_law *, struct pound_touch *, enum pound_edge, double overlap);
@@ -458,7 +458,7 @@ double pound_contact_damping_ratio(int model, double restitution)
 	return models[model].classic(restitution);
 }
 
-/* Dashpot of a study's contact over its scale: z, x or D; 0: it has none. */
+/* Dimensionless dashpot of a study's contact: z, x or D; 0: no dashpot. */
 static double dashpot_of(const struct pound_contact *contact)
 {
 	const struct model *model = &models[contact->model];
@@ -470,15 +470,15 @@ static double dashpot_of(const struct pound_contact *contact)
 	return model->exact(contact->restitution, contact->tension);
 }
 
-/* Numbers of a study's contact where it is.
+/* Parameters of a study's contact at one place.
  *
  * Given    contact   -
- *          place     stiffness beside, effective mass, mass that forces are divided by
+ *          place     adjacent stiffness, effective mass, divisor of forces
  * Returns  value     K, dashpot, ...; forces over place->mass
  *
- *   K = stiffness_n_m, or the ratio times the stiffness beside
- *   p^1.5: K = hertz_stiffness, or 5/4 K^(5/4) m^(-1/4) s^(-1/2) of the linear K: the same overlap at the reference speed s
- *   C = 2 z sqrt(K m),   c = 2 x sqrt(K m),   D as it is
+ *   K = stiffness_n_m, or the ratio times the adjacent stiffness
+ *   p^1.5: K = hertz_stiffness, or 5/4 K^(5/4) m^(-1/4) s^(-1/2) with the linear K: equal largest overlap at reference speed s
+ *   C = 2 z sqrt(K m),   c = 2 x sqrt(K m),   D unchanged
  *
  * Test     unit_contact: the_largest_overlap_of_both_springs_is_one_at_the_reference_speed
  */
@@ -510,10 +510,10 @@ struct pound_contact_law pound_contact_law(const struct pound_contact *contact,
 	return law;
 }
 
-/* Puts a contact that begins on the first branch of its model.
+/* Sets a contact that begins to the first branch of its model.
  *
  * Given    law
- *          rate   q > 0 where the overlap is 0 [m/s]; 0: it begins at rest
+ *          rate   q > 0 at overlap 0 [m/s]; 0: it begins at rest
  * Returns  at
  * Test     unit_contact
  */
@@ -523,11 +523,11 @@ void pound_contact_begin(const struct pound_contact_law *law, struct pound_touch
 	models[law->model].begin(law, at, rate);
 }
 
-/* Moves on to the branch behind an edge that does not end the contact.
+/* Changes to the branch beyond an edge that does not end the contact.
  *
  * Given    law, edge
- *          overlap   where the edge was reached [m]
- * Returns  at        the next branch, continuous in force with the last
+ *          overlap   at the edge [m]
+ * Returns  at        the next branch; the force is continuous
  * Test     unit_contact
  */
 void pound_contact_leave(const struct pound_contact_law *law, struct pound_touch *at, enum pound_edge edge,
@@ -537,10 +537,10 @@ void pound_contact_leave(const struct pound_contact_law *law, struct pound_touch
 	models[law->model].leave(law, at, edge, overlap);
 }
 
-/* The force of a branch at an overlap, which is a line over the rate whatever the form.
+/* The force of a branch at one overlap: linear in the rate for every form.
  *
  * Given    on, overlap
- * Returns  value     force at rate 0, its growth with the rate, and of the former with the overlap; powers of no overlap are 0
+ * Returns  value     force at rate 0, slope over the rate, slope of the former over the overlap; powers of overlaps < 0 are 0
  */
 struct pound_touch_line pound_contact_line(const struct pound_touch_branch *on, double overlap)
 {
@@ -565,7 +565,7 @@ double pound_contact_force_on(const struct pound_touch_branch *on, double overla
 	return line.still + line.rate * rate;
 }
 
-/* Takes a contact along the straight way from one overlap to another, with the branches behind the edges on it. */
+/* Updates the branch of a contact whose overlap changes monotonically, through every edge on the way. */
 void pound_contact_follow(const struct pound_contact_law *law, struct pound_touch *at, double from, double to)
 {
 	if (at->on.direction * (to - from) < 0)

@@ -1,12 +1,12 @@
 /* law.c - the constitutive laws, one function and one row each.
  *
- * A law's function makes the next branch out of the branch, the edge that was reached and the displacement u there:
+ * A law's function makes the next branch from the current branch, the edge that was reached and the displacement u there:
  *
- *   - Every law starts on the elastic branch of the first slope between -d_y and d_y, as shared_start.inl takes for granted.
- *   - An edge at which a branch begins is u itself to the last bit, or the solver would reach it at once.
- *   - Force is continuous over edges, to 4e-16 of its size (unit_law).  A branch may have no width.
- *   - |force| is at most that of the backbone at the largest |u| so far: pound_law_envelope() is the largest shear.
- *   - number, branch and memory may be read back; nothing else of a run may decide.
+ *   - Every law starts on the elastic branch of the first slope between -d_y and d_y; shared_start.inl relies on this.
+ *   - A branch that begins at one of its edges has this edge equal to u to the last bit, or the solver would cross it at once.
+ *   - Force is continuous across edges, to 4e-16 of its size (unit_law).  A branch may have zero width.
+ *   - |force| is at most the backbone's at the largest |u| so far: pound_law_envelope() is the largest shear.
+ *   - The next branch may depend on number, branch, memory, edge and u, and on nothing else of the run.
  *
  * Adding a law: the row 'a law' of the table of additions in engine/rooms.md. */
 #include "engine/scene/law.h"
@@ -19,7 +19,7 @@
 
 enum { CENTER, RIGHT, LEFT, RIGHT_SECANT, LEFT_SECANT };
 
-enum { BRANCHES_BACK = 8 /* on the way to force 0, more than any law has */ };
+enum { BRANCHES_BACK = 8 /* passed while unloading to force 0: more than any law has */ };
 
 /* The branch of the backbone curve beyond the yield point on one side (+1 right, -1 left). */
 static struct pound_branch hardened(const struct pound_backbone *s, double side)
@@ -50,7 +50,7 @@ static void elastoplastic(const struct pound_backbone *s, struct pound_law_state
 	if (at->number != CENTER)
 		at->memory[0] = at->number == RIGHT ? u - s->yield : u + s->yield;
 	double center = at->memory[0];
-	// the edge the branch starts from is u itself, so that it starts on it to the last bit
+	// the edge where the branch starts is set to u itself: equal to the last bit
 	double high = at->number == RIGHT ? u : center + s->yield;
 	double low = at->number == LEFT ? u : center - s->yield;
 	at->number = CENTER;
@@ -60,7 +60,7 @@ static void elastoplastic(const struct pound_backbone *s, struct pound_law_state
 	                                   .high = high};
 }
 
-/* (1 - r) c of the center c of the elastic range; where r |c| > d_y: (1 - r) d_y/r with the sign of c.
+/* (1 - r) c, c the center of the elastic range, r the hardening ratio; if r |c| > d_y: (1 - r) d_y/r with the sign of c.
  *
  * Source   the project's design pages, buildings.md 2
  * Test     unit_row_results: rows_have_their_known_answers
@@ -95,11 +95,12 @@ static void nonlinear_elastic(const struct pound_backbone *s, struct pound_law_s
 	}
 }
 
-/* Straight between the origin and the farthest point of each side: memory[0] right, memory[1] left (both > 0). */
+/* Linear between the origin and the farthest point on each side: memory[0] right, memory[1] left (both > 0). */
 static void origin_oriented(const struct pound_backbone *s, struct pound_law_state *at, enum pound_edge edge,
                             double u)
 {
-	if (at->number == RIGHT || at->number == LEFT) { // turned on the backbone: this is the farthest point now
+	if (at->number == RIGHT ||
+	    at->number == LEFT) { // velocity reversal on the backbone: the new farthest point
 		int side = at->number == LEFT;
 		at->memory[side] = fabs(u);
 		at->number = side ? LEFT_SECANT : RIGHT_SECANT;
@@ -107,7 +108,7 @@ static void origin_oriented(const struct pound_backbone *s, struct pound_law_sta
 		at->number = LEFT_SECANT;
 	} else if (at->number == LEFT_SECANT && edge == POUND_EDGE_HIGH) {
 		at->number = RIGHT_SECANT;
-	} else { // past the farthest point, or past the yield point of a law never yielded
+	} else { // beyond the farthest point, or for the first time beyond the yield point
 		double side = edge == POUND_EDGE_HIGH ? 1 : -1;
 		at->number = edge == POUND_EDGE_HIGH ? RIGHT : LEFT;
 		at->branch = hardened(s, side);
@@ -124,9 +125,9 @@ static const struct law {
 	const char *name;
 	const char *text; /* one line of documentation */
 	bool linear;      /* has one branch */
-	bool peaks; /* remembers the largest displacement of either side, the yield displacement to begin with */
+	bool peaks;       /* remembers the largest displacement on each side, initially the yield displacement */
 	void (*leave)(const struct pound_backbone *, struct pound_law_state *, enum pound_edge, double u);
-	/* where the force is 0 on the way back from u; NULL: at the origin */
+	/* displacement at which the force is 0 after unloading from u; NULL: the origin */
 	double (*residual)(const struct pound_backbone *, const struct pound_law_state *, double u);
 } laws[] = {
     {"linear", "a spring", true, false, linear, NULL},
@@ -150,7 +151,7 @@ const char *pound_law_name(int row)
 	return row >= 0 && row < (int)(sizeof laws / sizeof laws[0]) ? laws[row].name : NULL;
 }
 
-/* Whether a law has one branch at all times, so that no yield displacement is needed. */
+/* Whether a law has only one branch, so that no yield displacement is needed. */
 bool pound_law_linear(int law)
 {
 	return laws[law].linear;
@@ -177,12 +178,12 @@ void pound_law_start(const struct pound_backbone *backbone, struct pound_law_sta
 		at->memory[0] = at->memory[1] = backbone->yield;
 }
 
-/* Moves on to the branch behind an edge.
+/* Changes to the branch beyond an edge.
  *
  * Given    backbone  the law and its numbers
  *          edge      which end of the branch was reached
  *          u         displacement there [m]
- * Returns  at        the next branch, continuous in force with the last
+ * Returns  at        the next branch; the force is continuous
  */
 void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_state *at, enum pound_edge edge,
                      double u)
@@ -190,7 +191,7 @@ void pound_law_leave(const struct pound_backbone *backbone, struct pound_law_sta
 	laws[backbone->law].leave(backbone, at, edge, u);
 }
 
-/* Force per mass on the backbone curve [m/s2], which is the largest force of a motion that went as far as u >= 0. */
+/* Force per mass on the backbone curve [m/s2]: the largest force of a motion whose largest displacement is u >= 0. */
 double pound_law_envelope(const struct pound_backbone *s, double u)
 {
 	if (laws[s->law].linear || u <= s->yield)
@@ -198,16 +199,16 @@ double pound_law_envelope(const struct pound_backbone *s, double u)
 	return s->stiffness * (s->hardening * u + (1 - s->hardening) * s->yield);
 }
 
-/* The displacement at which the force is 0 on the way back, were the oscillator to turn at u [m]; 0 for laws that always come
- * back to the origin. */
+/* Residual displacement [m]: where the force is 0 if the oscillator unloads from u; 0 for laws that always unload to the
+ * origin. */
 double pound_law_residual(const struct pound_backbone *s, const struct pound_law_state *at, double u)
 {
 	return laws[s->law].residual ? laws[s->law].residual(s, at, u) : 0;
 }
 
-/* Work that the law gives back on the way from u to force 0, per mass [m2/s2]: the area under its branches.
+/* Recoverable work of the spring while unloading from u to force 0, per mass [m2/s2]: the area under its branches.
  *
- * So elastoplastic, first slope k: r^2/(2 k) where |r| <= 2 k d_y (Uang and Bertero 1990); towards the origin: r u/2.
+ * Elastoplastic, force r, first slope k: r^2/(2 k) if |r| <= 2 k d_y (Uang and Bertero 1990); origin-oriented: r u/2.
  *
  * Test     unit_law: a_law_gives_back_what_it_does_on_the_way_to_no_force
  */

@@ -1,7 +1,7 @@
-/* law.h - constitutive laws as straight branches and the edges between them.
+/* law.h - constitutive laws as linear branches and the edges between them.
  *
- * An integrator sees only a branch: on it the restoring force per mass is stiffness * u + offset, until u leaves
- * [low, high] or, where direction is not 0, the velocity turns against direction.  At such an edge it asks for the next. */
+ * An integrator sees only the current branch: the restoring force per mass is stiffness * u + offset, until u leaves
+ * [low, high] or, if direction is not 0, the velocity becomes opposite to direction.  At such an edge it requests the next. */
 #ifndef LAW_H
 #define LAW_H
 
@@ -23,9 +23,9 @@ struct pound_branch {
 
 enum pound_edge { POUND_EDGE_LOW, POUND_EDGE_HIGH, POUND_EDGE_REVERSAL };
 
-/* where on its law an oscillator is */
+/* state of an oscillator on its law */
 struct pound_law_state {
-	int number;       /* the law's own number of the branch */
+	int number;       /* number of the branch within the law */
 	double memory[2]; /* what the law remembers [m] */
 	struct pound_branch branch;
 };

@@ -1,10 +1,10 @@
-/* modes.c - modes of vibration of a shear building of initial stiffness.
+/* modes.c - modes of vibration of a shear building with its initial stiffness.
  *
  *   K phi = w^2 M phi,   K tridiagonal: k_i + k_(i+1) on the diagonal, -k_i beside it
  *
- * as a symmetric tridiagonal matrix M^(-1/2) K M^(-1/2), by implicit QL steps with Wilkinson's shift.  A frequency is then taken
- * anew from its shape, w^2 = sum k d^2 with the drifts d of the shape: an error of the shape enters squared, and the lowest modes
- * keep their digits beside stiff stories. */
+ * as a symmetric tridiagonal matrix M^(-1/2) K M^(-1/2), by implicit QL steps with Wilkinson's shift.  Each frequency is then
+ * recomputed from its shape, w^2 = sum k d^2 with the drifts d of the shape: an error of the shape enters squared, so the lowest
+ * frequencies stay accurate if some stories are stiff. */
 #include "engine/scene/modes.h"
 
 #include <assert.h>
@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/* One QL step on rows l to m of a tridiagonal matrix; z: its vectors so far, by column. */
+/* One QL step on rows l to m of a tridiagonal matrix; z[i]: its i-th eigenvector so far. */
 static void ql_step(int n, double *d, double *e, int l, int m, double (*z)[POUND_STORIES])
 {
 	double g = (d[l + 1] - d[l]) / (2 * e[l]), r = sqrt(g * g + 1);
@@ -22,7 +22,7 @@ static void ql_step(int n, double *d, double *e, int l, int m, double (*z)[POUND
 		const double f = s * e[i], b = c * e[i];
 		r = sqrt(f * f + g * g);
 		e[i + 1] = r;
-		if (r == 0) { // the matrix falls into two here
+		if (r == 0) { // the matrix splits here
 			d[i + 1] -= p;
 			e[m] = 0;
 			return;
@@ -45,15 +45,15 @@ static void ql_step(int n, double *d, double *e, int l, int m, double (*z)[POUND
 	e[m] = 0;
 }
 
-/* Eigenvectors of a symmetric tridiagonal matrix, a row each.
+/* Eigenvectors of a symmetric tridiagonal matrix, one row each.
  *
- * Given    d, e  diagonal, and what is beside it (n - 1, and room for one more); changed
+ * Given    d, e  diagonal and off-diagonal (n - 1 values, space for n); overwritten
  * Returns  z     (n x n)
  * Source   Bowdler, Martin, Reinsch and Wilkinson 1968, Numer. Math. 11, 293-306
  */
 static void tridiagonal_vectors(int n, double *d, double *e, double (*z)[POUND_STORIES])
 {
-	enum { STEPS = 60 }; // of one eigenvalue: two are usual
+	enum { STEPS = 60 }; // limit per eigenvalue; two are usual
 	for (int i = 0; i < n; i++)
 		for (int k = 0; k < n; k++)
 			z[i][k] = i == k;
@@ -69,12 +69,12 @@ static void tridiagonal_vectors(int n, double *d, double *e, double (*z)[POUND_S
 		}
 }
 
-/* Modes of a building on the ground.
+/* Modes of a building fixed to the ground.
  *
  * Given    mass, stiffness  of floors and the stories below them, from the ground up [kg], [N/m]  (n)
  * Returns  modes            frequencies in ascending order, shapes with sum m phi^2 = 1
  *
- * Valid    Frequencies to a few roundings; shapes to some roundings of the largest frequency over the distance to the next.
+ * Valid    Relative error of frequencies: a few roundings; of shapes: roundings times largest frequency / distance to the next.
  * Source   Chopra, Dynamics of Structures, 10.2 and 10.4
  * Test     unit_modes
  */
@@ -122,9 +122,9 @@ void pound_modes_frequencies(int n, const double *mass, const double *stiffness,
 		w[r] = modes.w[r];
 }
 
-/* Damping with the same ratio in every mode: force on floor i [N] by the rate of the drift of story j [m/s].
+/* Damping with the same ratio in every mode: force on floor i [N] per drift rate of story j [m/s].
  *
- *   C = sum over modes of 2 xi w (M phi)(M phi)^T in the floors' velocities, which are sums of the rates of drifts
+ *   C = sum over modes of 2 xi w (M phi)(M phi)^T for floor velocities; each of these is the sum of the drift rates below
  *
  * Given    damping_ratio  xi
  * Returns  matrix         [N s/m]  (n x n)

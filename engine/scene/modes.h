@@ -2,7 +2,7 @@
 #ifndef MODES_H
 #define MODES_H
 
-enum { POUND_STORIES = 50 }; /* of a building, at most */
+enum { POUND_STORIES = 50 }; /* maximum of a building */
 
 /* angular frequencies in ascending order, and shapes of floors with sum m phi^2 = 1 */
 struct pound_modes {

@@ -28,7 +28,7 @@ const struct pound_law *pound_row_law(const struct pound_scene *scene, int build
 	return b->has_law ? &b->law : &scene->law;
 }
 
-/* Contacts of a gap where a document gives none: floor i with i. */
+/* Number of contacts of a gap if the document lists none: floor i touches floor i. */
 static int floors_in_common(const struct pound_scene *scene, int gap)
 {
 	const int left = pound_row_storeys(scene, gap), right = pound_row_storeys(scene, gap + 1);
@@ -43,7 +43,7 @@ int pound_row_contacts(const struct pound_scene *scene)
 	return scene->contact.present ? n : 0;
 }
 
-/* Contact k of a row, with all its members: what it does not have for itself is that of the scene.
+/* Contact k of a row; members that the contact does not set are taken from the scene's contact.
  *
  * Test     unit_row_results: what_a_sweep_varies_is_what_a_document_says
  */
@@ -65,14 +65,14 @@ void pound_row_contact_of(const struct pound_scene *scene, int k, struct pound_r
 	contact->levels[0] = contact->levels[1] = k + 1;
 }
 
-/* Bytes of a scene's buildings and contacts; 0: it has none. */
+/* Bytes of a scene's buildings and contacts; 0: not a row of buildings. */
 size_t pound_row_bytes(const struct pound_scene *scene)
 {
 	return sizeof *scene->buildings * (size_t)scene->n_buildings +
 	       sizeof *scene->contacts * (size_t)scene->n_contacts;
 }
 
-/* Gives a scene buildings and contacts of its own, which may vary.
+/* Copies the buildings and contacts of a scene, so that they can be varied.
  *
  * Given    memory   (pound_row_bytes)   outlives the scene
  */
