@@ -223,9 +223,8 @@ void document_hint(const char *text, size_t length)
 	struct problems problems;
 	struct pound_study *study = study_design_from_json(text, length, &problems);
 	if (study && study->elsewhere)
-		command_complain("a study without \"scene\" is of a model of your own: `pound design' prints the "
-		                 "rows to run it on, "
-		                 "`pound indices' reads what it gave");
+		command_complain("a study without \"scene\" is for a model of your own: `pound design' prints the "
+		                 "samples to run, `pound indices' reads the outputs");
 	if (study)
 		study_free(study);
 }

@@ -41,8 +41,8 @@ bool backup_restore(const char *path, const char *from)
 	ok = ok && database_open(&reading, from, false, NULL, 0) && database_ours(&reading, from) &&
 	     database_checked(&reading) && database_copy(&reading, made) && disk_replace(&disk, made);
 	if (ok)
-		log_line("%s is a copy of %s now; as it was it is kept as %s-replaced", disk.database, from,
-		         disk.database);
+		log_line("%s was replaced by a copy of %s; the old database is kept as %s-replaced", disk.database,
+		         from, disk.database);
 	database_close(&reading);
 	disk_leave(&disk);
 	return ok;

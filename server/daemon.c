@@ -64,8 +64,7 @@ static void log_library(void *of, const char *format, va_list values)
 	}
 	vsnprintf(text, sizeof text, format, values);
 	text[strcspn(text, "\n")] = '\0';
-	log_line("http: %s (and %d lines before that were not reported)", text,
-	         atomic_exchange(&server->library_unreported, 0));
+	log_line("http: %s (%d earlier messages omitted)", text, atomic_exchange(&server->library_unreported, 0));
 }
 
 /* Divides the descriptors that this process may open, after raising their limit as needed: when accept(2) finds no free
@@ -95,9 +94,11 @@ static int share_files(struct server *server, int wanted)
 	connections->most_probed = MIN(connections->most + PROBES, all - 1 - all / 64);
 	connections->most_waiting = (connections->most + 1) / 2;
 	if (all < CONNECTIONS_MIN)
-		log_line("only %d files may be open (ulimit -n), which is too few", (int)files.rlim_cur);
+		log_line("the limit of open files (ulimit -n) is %d, too low to serve connections",
+		         (int)files.rlim_cur);
 	else if (connections->most < wanted)
-		log_line("only %d files may be open (ulimit -n): %d connections are served at a time, not %d",
+		log_line("the limit of open files (ulimit -n) is %d: at most %d connections are served at a time "
+		         "instead of %d",
 		         (int)files.rlim_cur, connections->most, wanted);
 	return all < CONNECTIONS_MIN ? 0 : all;
 }
@@ -131,7 +132,7 @@ bool daemon_start(struct server *server)
 		return false;
 	}
 	if (!listen_is_loopback(&address) && !server->tokens && !options->insecure) {
-		log_line("cannot listen on %s: others reach it, so it needs --token-file, or --insecure",
+		log_line("cannot listen on %s: it is not a loopback address, so it needs --token-file, or --insecure",
 		         options->listen);
 		return false;
 	}

@@ -83,7 +83,7 @@ static bool set(const struct database *d, const char *name, const char *value)
 	snprintf(ask, sizeof ask, "PRAGMA %s", name);
 	bool holds = done(d, make) && !strcmp(answer(d, ask, text), value);
 	if (!holds)
-		log_line("database: %s does not become %s: %s", name, value, sqlite3_errmsg(d->db));
+		log_line("database: cannot set %s to %s: %s", name, value, sqlite3_errmsg(d->db));
 	return holds;
 }
 
@@ -150,7 +150,7 @@ bool database_checked(const struct database *d)
 	char text[32];
 	bool whole = !strcmp(answer(d, "PRAGMA quick_check(1)", text), "ok");
 	if (!whole)
-		log_line("the database is damaged: %s; poundd --restore puts a copy in its place",
+		log_line("the database is damaged: %s; poundd --restore replaces it by a backup",
 		         *text ? text : sqlite3_errmsg(d->db));
 	return whole;
 }
@@ -221,7 +221,7 @@ static bool migrated(const struct database *d, const char *path, int version)
 	for (; ok && version < USER_VERSION; version++)
 		ok = versioned(d, steps[version], version + 1);
 	if (ok)
-		log_line("%s is of version %d now; as it was it is kept as %s", path, version, copy);
+		log_line("%s was migrated to version %d; the old database is kept as %s", path, version, copy);
 	return ok;
 }
 
@@ -237,8 +237,9 @@ static int version_of(const struct database *d, const char *path)
 	if (application == APPLICATION_ID && version >= 1 && version <= USER_VERSION)
 		return version;
 	if (*text)
-		log_line("%s is not a database of poundd, or of a newer one: version %d, not %d", path, version,
-		         USER_VERSION);
+		log_line("%s is not a database of poundd, or belongs to a newer one: its version is %d, at most %d "
+		         "is supported",
+		         path, version, USER_VERSION);
 	else
 		log_line("cannot read the database %s: %s", path, sqlite3_errmsg(d->db));
 	return -1;
@@ -280,7 +281,7 @@ static bool prepared(struct database *d, const char *const statements[], int n)
 bool database_open(struct database *d, const char *path, bool writes, const char *const statements[], int n)
 {
 	if (writes && sqlite3_libversion_number() < RESET_SAFE)
-		log_line("while this runs no other program may write to the database: SQLite %s could damage it then",
+		log_line("SQLite %s can damage the database if another program writes to it while poundd runs",
 		         sqlite3_libversion());
 	if (!connected(d, path, writes))
 		return false;

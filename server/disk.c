@@ -48,9 +48,8 @@ static const char *identify(struct disk *disk, const char *path)
 	if (stat(disk->database, &about) != 0)
 		return strerror(errno);
 	return !S_ISREG(about.st_mode) ? "it is not a file"
-	       : about.st_nlink > 1
-	           ? "the file has a second name (a hard link), through which a second server could use it"
-	           : NULL;
+	       : about.st_nlink > 1    ? "the file has more than one hard link, so a second server could use it"
+	                               : NULL;
 }
 
 /* Records the identity of a file, for `same`. */
@@ -98,8 +97,8 @@ bool disk_intact(struct disk *disk)
 	           locked = note(disk->lock_name, &lock) && same(&lock, &disk->files[1]);
 	const time_t now = time(NULL);
 	if (!(there && locked) && atomic_exchange(&disk->reported, now) != now)
-		log_line("%s was removed or replaced while this server runs: nothing is accepted until it is started "
-		         "again with the right one",
+		log_line("%s was removed or replaced while the server runs: nothing is accepted until the server is "
+		         "restarted with the right file",
 		         there ? disk->lock_name : disk->database);
 	return there && locked;
 }
@@ -122,9 +121,8 @@ static bool strange_wal(const struct disk *disk)
 	const struct noted before = noted(disk);
 	if (!disk_has_wal(disk) || same(&before.database, &none) || same(&before.database, &disk->files[0]))
 		return false;
-	log_line("%s-wal belongs to another file than %s, which was restored or replaced: poundd --restore puts "
-	         "a copy in "
-	         "place without it; if both were moved here together, remove %s first",
+	log_line("%s-wal does not belong to %s, which was restored or replaced: restore a backup with poundd "
+	         "--restore; if both files were moved here together, remove %s first",
 	         disk->database, disk->database, disk->lock_name);
 	return true;
 }

@@ -86,16 +86,16 @@ struct reply http_refusal(enum store_status status, const char *absent)
 	} refusals[] = {
 	    [STORE_NONE] = {API_NOT_FOUND, NULL},
 	    [STORE_CORRUPT] = {API_CORRUPT, "the stored bytes are damaged"},
-	    [STORE_FAILED] = {API_UNAVAILABLE, "the database does not answer; please try again"},
+	    [STORE_FAILED] = {API_UNAVAILABLE, "the database cannot be used now; please try again"},
 	    [STORE_CLASH] = {API_KEY_REUSED, "this Idempotency-Key was used before with another body"},
 	    [STORE_FULL] = {API_UNAVAILABLE, "the disk has no room for new studies"},
 	    [STORE_REPLACED] =
 	        {API_UNAVAILABLE,
 	         "the database file was removed or replaced: nothing is accepted until the server is "
-	         "started again"},
+	         "restarted"},
 	    [STORE_CROWDED] = {API_UNAVAILABLE, "the queue is full"},
 	    [STORE_UNRECORDED] = {API_UNAVAILABLE,
-	                          "a record that the study names was just deleted: PUT it again"},
+	                          "a record named by the study was deleted meanwhile: PUT it again"},
 	    [STORE_CLIENT_CROWDED] = {API_TOO_MANY, "the queue has no room for more studies of this token"},
 	};
 	return http_problem(refusals[status].fault, status == STORE_NONE ? absent : refusals[status].detail,
@@ -258,7 +258,8 @@ static enum MHD_Result take_argument(void *of, enum MHD_ValueKind kind, const ch
 {
 	struct request *request = of;
 	if (value != MHD_lookup_connection_value(request->connection, kind, name)) // which finds the first
-		head_refuse(&request->head, API_BAD_REQUEST, false, "%.60s is given twice", name);
+		head_refuse(&request->head, API_BAD_REQUEST, false, "query parameter %.60s occurs more than once",
+		            name);
 	head_argument(&request->head, request->operation, name, value ? value : "");
 	return MHD_YES;
 }

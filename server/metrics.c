@@ -123,7 +123,7 @@ char *metrics_text(const struct server *server, size_t *length)
 	    {"process_cpu_seconds_total", "counter", "", "Processor time.",
 	     (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec},
 	    {"process_resident_memory_bytes", "gauge", "", "Resident memory.", resident_bytes()},
-	    {"pound_build_info", "gauge", "{version=\"" POUND_VERSION "\"}", "Which poundd this is.", 1},
+	    {"pound_build_info", "gauge", "{version=\"" POUND_VERSION "\"}", "Version of poundd.", 1},
 	};
 	struct writer w;
 	writer_init(&w);

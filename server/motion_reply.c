@@ -49,7 +49,8 @@ struct reply motions_of(const struct request *request, const struct stored_run *
 	if (!motions_choose(opened->study, opened->run, place, &choice, why))
 		return problem(API_CONFLICT, why);
 	if (!peer && !choice.one && motions_samples(opened->run, &choice) > SAMPLES_MAX)
-		return problem(API_CONFLICT, "all signals have more than 1000000 samples: choose one by signal");
+		return problem(API_CONFLICT,
+		               "the signals have more than 1000000 samples in all: select one with ?signal=");
 	snprintf(reply.etag, sizeof reply.etag, "\"%s-%s\"",
 	         list   ? "spectra"
 	         : peer ? "at2"

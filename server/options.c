@@ -31,7 +31,7 @@ const struct option_row options_table[] = {
 	 NULL, AT(backup), 0, 0},
 	{"restore",         0,   "FILE",    "replace the database by a copy of FILE, keep the old one as DATABASE-replaced, and exit; no server may run",
 	 NULL, AT(restore), 0, 0},
-	{"workers",         'w', "N",       "threads that compute (absent: one per core)", NULL, AT(workers), 1, WORKERS_MAX},
+	{"workers",         'w', "N",       "threads that run studies (default: one per core)", NULL, AT(workers), 1, WORKERS_MAX},
 	{"launcher",        0,   "COMMAND", "command that starts worker processes, such as 'srun pound-worker'", NULL, AT(launch.command), 0, 0},
 	{"launchers",       0,   "N",       "run this command N times; each is a worker group that starts and fails independently (absent: once)",
 	 NULL, AT(launch.n), 1, COORDINATOR_GROUPS_MAX},
@@ -40,7 +40,7 @@ const struct option_row options_table[] = {
 	{"worker-listen",   0,   "ADDRESS:PORT", "address and port at which workers that are started elsewhere connect", NULL, AT(launch.at), 0, 0},
 	{"worker-token-file", 0, "FILE",    "token of those workers: 64 hexadecimal digits", NULL, AT(launch.token_file), 0, 0},
 	{"keep-days",       0,   "N",       "days until a finished study is deleted; 0: never", "0", AT(keep_days), 0, 36500},
-	{"keep-samples-days", 0, "N",       "days until the samples of a finished study are deleted; 0: with the study", "0", AT(keep_samples_days), 0, 36500},
+	{"keep-samples-days", 0, "N",       "days until the samples of a finished study are deleted; 0: when the study is", "0", AT(keep_samples_days), 0, 36500},
 	{"host",            0,   "NAMES",   "comma-separated host names to accept in Host, in addition to localhost and IP addresses",
 	 NULL, AT(host), 0, 0},
 	{"token-file",      0,   "FILE",    "file of bearer tokens, one per line; requests without a valid token get 401", NULL, AT(token_file), 0, 0},
@@ -143,9 +143,10 @@ void options_read(struct options *options, int argc, char **argv)
 	char texts[sizeof options_table / sizeof options_table[0]][192];
 	const struct argp argp = {.options = flags,
 	                          .parser = parse,
-	                          .doc = "Serves pounding studies over HTTP.\vEvery option may be given in the "
-	                                 "environment as well: --port as "
-	                                 "POUNDD_PORT, --token-file as POUNDD_TOKEN_FILE.  A flag wins."};
+	                          .doc =
+	                              "Serves pounding studies over HTTP.\vEvery option may be given in the "
+	                              "environment as well: --port as "
+	                              "POUNDD_PORT, --token-file as POUNDD_TOKEN_FILE.  Flags take precedence."};
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	*options = (struct options){.workers = cores < 1             ? 1
 	                                       : cores > WORKERS_MAX ? WORKERS_MAX

@@ -17,7 +17,7 @@ static char *stored_read(const void *with, const struct study_source *of, size_t
 	char *content = NULL;
 	if (!*of->sha256) {
 		snprintf(why, STUDY_WHY_SIZE,
-		         "needs its sha256, by which the server has the file: `pound submit' sends it, or PUT "
+		         "needs the sha256 of a file stored on the server: use `pound submit', or first PUT "
 		         "/v1/records/{sha256}");
 		return NULL;
 	}
@@ -75,7 +75,7 @@ struct reply records_put(struct request *request)
 		return http_problem(API_BAD_REQUEST, "the body must be the file of a recorded ground motion", NULL);
 	study_digest(request->body, request->length, sha256);
 	if (strcmp(sha256, sha256_of(request)) != 0) {
-		snprintf(detail, sizeof detail, "the SHA-256 of the body is %s, not that of the path", sha256);
+		snprintf(detail, sizeof detail, "the SHA-256 of the body is %s and differs from the path", sha256);
 		return http_problem(API_BAD_REQUEST, detail, NULL);
 	}
 	const enum store_status status =

@@ -348,8 +348,8 @@ static struct reply so_far(struct request *request, int retry_after, int *rows)
 		reply = unopened(request, &opened, error);
 	else {
 		reply = problem(API_NOT_READY, sampled ? "no row of the design is complete yet"
-		                                       : "only sensitivity studies have results so far; this "
-		                                         "study is not finished yet");
+		                                       : "this study is not finished; only sensitivity "
+		                                         "studies have partial results");
 		reply.retry_after = retry_after;
 	}
 	stored_run_close(&opened);
@@ -454,9 +454,9 @@ static struct reply samples(struct request *request)
 	if (error)
 		reply = unopened(request, &opened, error);
 	else if (pound_study_sampled(opened.study) && !ours)
-		reply = problem(API_CONFLICT,
-		                "another version of poundd computed the study; only that one has its samples: "
-		                "submit it again");
+		reply =
+		    problem(API_CONFLICT, "another version of poundd computed the study, so this one cannot read its "
+		                          "samples: submit it again");
 	else if (pound_study_sampled(opened.study)) {
 		pound_run_rows_take(opened.run, rows);
 		const int left = stored_run_left(&opened);
@@ -470,8 +470,8 @@ static struct reply samples(struct request *request)
 		reply.body =
 		    (npy ? histories_to_npy : histories_to_csv)(opened.study, opened.run, -1, &reply.length, &error);
 	else
-		reply = problem(API_CONFLICT, "only a sensitivity study has samples, spectra with histories, and a "
-		                              "small study of responses its contacts");
+		reply = problem(API_CONFLICT, "samples exist only for sensitivity studies, spectra with histories, "
+		                              "and small studies of responses (contacts)");
 	stored_run_close(&opened);
 	return reply.body ? reply : error ? problem(API_CONFLICT, error) : no_memory();
 }

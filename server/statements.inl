@@ -87,7 +87,7 @@ static const char *const statement_text[] = {
 	// an orderly stop does not count as a failed attempt
 	[STOPPED]  = "UPDATE study SET status = 'queued', attempt = max(attempt_kept, attempt - 1) WHERE status = 'running'",
 	[VAIN]     = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
-	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, and no part of it was done' "
+	              "error = 'out-of-memory-or-crash: the server ended ten times while it ran this study, before any block was finished' "
 	              "WHERE status = 'queued' AND attempt - attempt_kept >= 10",
 	[POISON]   = "UPDATE study SET status = 'failed', finished = max(" NOW ", started), "
 	              "error = 'poison-study: the server crashed three times while it ran this study' "

@@ -57,7 +57,7 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	expect_words(POUND("cancel", id), 1, WORDS(id, "finished"));
 	// one that has none has not failed
 	submit("rigid_wall", true, id);
-	expect_words(POUND("samples", id), 1, WORDS("only a sensitivity study has samples"));
+	expect_words(POUND("samples", id), 1, WORDS("samples exist only for sensitivity studies"));
 	// those of a response are its contacts
 	submit("response", true, id);
 	expect_words(POUND("samples", id), 0, WORDS("signal,time_s,duration_s,cell,contact", "impulse_n_s"));

@@ -108,7 +108,7 @@ static void a_copy_can_be_copied(void **state)
 }
 
 static const char REPLACED[] =
-    "the database file was removed or replaced: nothing is accepted until the server is started again";
+    "the database file was removed or replaced: nothing is accepted until the server is restarted";
 
 /* The status of a POST of a small study, and of all else that changes something. */
 static void nothing_is_accepted(const struct service *service, const char *why)
@@ -212,7 +212,7 @@ static void a_wal_is_not_applied_to_another_database(void **state)
 	overwrite(backup, service->database);
 	assert_int_not_equal(service_run(service, 1), 0);
 	char *log = program_file(service->log, NULL);
-	snprintf(line, sizeof line, "-wal belongs to another file than");
+	snprintf(line, sizeof line, "-wal does not belong to");
 	assert_non_null(strstr(log, line));
 	free(log);
 	assert_int_equal(access(wal, F_OK), 0); // and nothing was lost by the try

@@ -542,7 +542,7 @@ static void spectra_without_histories_have_no_samples_and_the_server_lives_on(vo
 	               id);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	problem_is(service_get(service, "/v1/studies/%s/samples", id), 409,
-	           "only a sensitivity study has samples");
+	           "samples exist only for sensitivity studies");
 }
 
 static void an_unchanged_status_is_304_to_its_etag(void **state)
