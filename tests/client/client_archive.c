@@ -120,7 +120,8 @@ static void a_study_without_samples_is_archived_without_them(void **state)
 	         id);
 	struct program_outcome archived = POUND("archive", id, path);
 	program_expect(&archived, 0);
-	assert_non_null(strstr(archived.err, "archived without samples: samples exist only for sensitivity studies"));
+	assert_non_null(
+	    strstr(archived.err, "archived without samples: samples exist only for sensitivity studies"));
 	program_free(&archived);
 	struct program_outcome listed = shell("ls $1 | grep -c . ; cd $1 && sha256sum --quiet -c SHA256SUMS");
 	program_expect(&listed, 0);
