@@ -1,14 +1,14 @@
-/* demand.c - the search for the yield displacement that gives a target demand, one response after the other.
+/* demand.c - search for the yield displacement that gives a target demand, one response per step.
  *
- * The demand is a continuous function of the yield displacement, and falls from any to 0 in the large; on logarithmic scales
- * its slope is -1 where the body does not yield. */
+ * The demand is a continuous function of the yield displacement and falls overall to 0 as the yield displacement grows; on
+ * logarithmic scales its slope is -1 while the body does not yield. */
 #include "engine/run/demand.h"
 
 #include <math.h>
 
 #include "engine/numeric/elementary.h"
 
-/* Relative difference from the target at which a search ends. */
+/* Relative tolerance of the target demand. */
 static const double REACHED = 1e-6;
 
 bool pound_demand_reached(const struct pound_demand *demand)
@@ -18,7 +18,7 @@ bool pound_demand_reached(const struct pound_demand *demand)
 
 /* Takes a response.
  *
- * Given    response  its number, to be remembered
+ * Given    response  its number, stored if it is the nearest
  *          share     its demand over the target, > 0
  * Returns  demand    the nearest response so far
  * Source   model.md 3 of the project's design pages
