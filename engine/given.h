@@ -48,7 +48,7 @@ enum pound_given_note { POUND_GIVEN_NOTES(X) POUND_GIVEN_N_NOTES };
 
 struct pound_given_checks {
 	int pair[2];        /* inputs that depend most on each other; -1: there is one input */
-	double correlation; /* of their ranks */
+	double correlation; /* of the pair's ranks (Spearman) */
 	unsigned notes;     /* bits 1 << enum pound_given_samples_note */
 };
 

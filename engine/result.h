@@ -38,7 +38,7 @@ struct pound_pair_floors {
 	double force, approach;             /* largest contact force [N], largest approach speed [m/s] */
 };
 
-/* One signal's response.  NAN where the scene has no such value (the yield displacement of a linear law). */
+/* One signal's response.  NAN if the scene has no such value (the yield displacement of a linear law). */
 struct pound_response {
 #define X(member, name, oscillator) double member;
 	POUND_MEASURES(X)
@@ -51,7 +51,7 @@ struct pound_response {
 	struct pound_pair_floors floors;
 };
 
-// one row per quantity of one storey, and of the floor above it, of a row of buildings: X(member, name in a result)
+// one row per quantity of one story, and of the floor above it, of a row of buildings: X(member, name in a result)
 // clang-format off
 #define POUND_STOREY_MEASURES(X)                                                          \
 	X(drift_max,             "drift_max_m")                                               \
@@ -81,7 +81,7 @@ struct pound_response {
 	X(first_speed,           "first_speed_m_s")
 // clang-format on
 
-/* One signal's response of a storey and the floor above it.  NAN as above. */
+/* One signal's response of a story and the floor above it.  NAN as above. */
 struct pound_storey_response {
 #define X(member, name) double member;
 	POUND_STOREY_MEASURES(X)
@@ -395,7 +395,7 @@ struct pound_work {
 	int64_t yield_given;       /* linear responses skipped: the yield displacement is already known */
 	int64_t linear_unasked;    /* linear responses of the right oscillator skipped: no output needs them */
 	int64_t nonlinear_unasked; /* nonlinear ones likewise */
-	int64_t contacts;          /* contacts in the runs made */
+	int64_t contacts;          /* contacts in the runs done */
 	int64_t yield_searches;    /* for the yield displacement of a target demand, 2 corrections or more */
 	int64_t yield_jumps;       /* of these, ended off the target: the demand jumps over it */
 	int64_t yield_missed;      /* ended off the target: the corrections were used up */
@@ -429,7 +429,7 @@ enum pound_spectrum_row {
 	POUND_N_INTEGRATED = POUND_SPECTRUM_FREE + 1
 };
 
-/* Pseudo-accelerations over the signals [m/s2], NAN: no signal has one  (n frequencies each) */
+/* Statistics of the pseudo-acceleration over the signals [m/s2], NAN: no signal has a value  (n frequencies each) */
 struct pound_floor_spectrum {
 	double *mean, *p16, *p84;
 	double *error; /* largest relative difference from runs on half the sample step, of integrated rows */
@@ -440,7 +440,7 @@ struct pound_floor_result {
 	double frequency_hz; /* first frequency of the floor's body or building, without pounding */
 	int signals, signals_failed, signals_checked;
 	double impulse_mean; /* mean of the largest impulses [N s] */
-	double pulses_mean;  /* mean number of pulses of the idealised train */
+	double pulses_mean;  /* mean number of pulses of the idealized train */
 };
 
 /* The number of signals per row and its reason: the candidate numbers, and the index that decided. */

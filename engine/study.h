@@ -160,7 +160,7 @@ struct pound_storey_place {
 	int storey;   /* from 1 */
 };
 
-/* A recorded ground motion among those of a suite. */
+/* A recorded ground motion of a suite. */
 struct pound_record {
 	const char *name; /* display name; NULL: none */
 	int n;            /* samples  >= 2 */
@@ -170,7 +170,7 @@ struct pound_record {
 	bool reversed;    /* sign reversed */
 };
 
-/* What the records of a suite are scaled to. */
+/* Intensity measure that the records of a suite are scaled to. */
 enum pound_scale_to { POUND_SCALE_NONE, POUND_SCALE_PGA, POUND_SCALE_SA, POUND_SCALE_MEDIAN_SA };
 
 struct pound_scale {
@@ -219,7 +219,7 @@ struct pound_scene {
 struct pound_distribution {
 	int type;              /* row of the distributions, pound_distribution_name */
 	double p[4];           /* parameters in the order of pound_distribution_parameter(type, k) */
-	int n_values;          /* of a discrete or an empirical one  >= 1 */
+	int n_values;          /* of a discrete or empirical distribution  >= 1 */
 	const double *values;  /* ascending  (n_values), not owned */
 	const double *weights; /* of the values, > 0, not normalized  (n_values), not owned; NULL: equal */
 };
@@ -293,7 +293,7 @@ struct pound_design {
 	int method; /* row of the designs, pound_design_name */
 	int rows;   /* n, rows of the matrices A and B  >= 2; of a growing design: initially */
 	uint64_t seed;
-	int row; /* noise of the first row is that of this row number, to rerun one row alone; 0: no shift */
+	int row;             /* row number whose noise the first row uses, to rerun one row alone; 0: no shift */
 	bool common_signals; /* a row's samples share their noise; false: new noise for each sample */
 	int randomisations;  /* independent, of a quasi-random design; 0: chosen automatically */
 	int resamples;       /* bootstrap resamples, of a design without groups of rows; 0: 2000 */
@@ -335,7 +335,7 @@ struct pound_spectrum {
 	struct pound_storey_place place; /* the floor, in a row of buildings */
 };
 
-/* How wide a gap has to be. */
+/* Requests of a separation study: how wide a gap has to be. */
 struct pound_separation {
 	int n_gaps;         /* 0: round values up to the largest gap that a run needs */
 	const double *gaps; /* to report the pounding probability of [m]  ascending  (n_gaps) */

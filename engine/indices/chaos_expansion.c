@@ -4,7 +4,7 @@
  *    all samples of the rows outside the fold (least squares, orthonormal Legendre terms: polynomial chaos expansion).
  * 2. The closed variances of g follow exactly from its coefficients.  A row's estimate is the exact value of g plus the
  *    pick-freeze estimate of the output less the same estimate of g, with the fit that excludes the row (closed_indices.c).
- * 3. Likewise the conditional mean is that of g plus that of the output less g (conditional_mean.c). */
+ * 3. Likewise the conditional mean is the sum of the means of g and of the output less g (conditional_mean.c). */
 #include "engine/indices/indices.h"
 #include "engine/indices/legendre.h"
 

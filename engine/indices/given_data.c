@@ -6,7 +6,7 @@
  *    two inputs), and samples near in one input may be near in the others by chance only.
  * 3. S1 is from local_regression.c or from the polynomial (given_polynomial.c), whichever has the narrower interval; ST and
  *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.
- * 4. Conditional means are those of the polynomial plus those of its residual (conditional_mean.c). */
+ * 4. Conditional means are the polynomial's plus its residual's (conditional_mean.c). */
 #include "engine/given.h"
 
 #include <assert.h>

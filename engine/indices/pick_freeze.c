@@ -1,6 +1,6 @@
 /* pick_freeze.c - estimators of first-order and total indices by name, each a function of means over the rows.
  *
- * In the formulas a, b, c, e are the outputs of a row at A, B, A with column j from B, and B with column j from A, centred
+ * In the formulas a, b, c, e are the outputs of a row at A, B, A with column j from B, and B with column j from A, centered
  * by the grand mean of all rows (against cancellation); a capital is a mean over rows; mu = (A + B) / 2;
  * v = mean((a^2 + b^2) / 2) - mu^2; w is the variance over the samples A, B, C of all rows.  If given, the covariance of
  * the noise of two outputs is subtracted from their product, so that every formula estimates the indices for
@@ -54,7 +54,7 @@ static void lean_moments(const struct pound_outputs *row, double *m)
 	m[LEAN_ALL] = all / (d + 2);
 }
 
-/* First-order index by Saltelli's formula, centred, and total index by Jansen's.
+/* First-order index by Saltelli's formula, centered, and total index by Jansen's.
  *
  *   S_j = mean((b - mu) (c - a)) / v          T_j = mean((a - c)^2) / (2 w)
  *

@@ -7,8 +7,8 @@
  *      (rows + signals / R + pairs / (R (R - 1))) / n
  *
  *    rows: variance of the rows' means over all signals;  signals: 4 times the variance of the first-order part in one signal;
- *    pairs: 2 times that of the part in two signals.  (For T with D = c - a: rows = Var(delta^2 / 2), signals = E(delta^2 eta^2),
- *    pairs = E(eta^4) / 2, where delta is the mean and eta^2 the variance of D given the row.)
+ *    pairs: 2 times the variance of the part in two signals.  (For T with D = c - a: rows = Var(delta^2 / 2), signals =
+ *    E(delta^2 eta^2), pairs = E(eta^4) / 2, where delta is the mean and eta^2 the variance of D given the row.)
  * 2. The intervals of every index with pairs, triples and all six of the pilot's signals give three equations.  They are
  *    solved by nonnegative least squares of relative errors.
  * 3. The jackknife leaves a bias of order 1 / (R (R - 1)) in a ratio of means of R signals: with E(Y_R) = Y + b / R + c / R^2,

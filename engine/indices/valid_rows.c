@@ -193,7 +193,7 @@ struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values
 /* The valid rows: all samples have an output.
  *
  * Given    values      (n_rows x n_samples x n_signals)   numerators and denominators; a known variance: one signal
- * Returns  rows        -                                  outputs, centred, and their noise
+ * Returns  rows        -                                  outputs, centered, and their noise
  * Memory   scratch     (pound_rows_scratch)               held by rows
  *
  * A row with a failed run is left out as a whole, as is a row with an undefined ratio of means or an undefined

@@ -414,7 +414,7 @@ static const struct output {
 	const char *needs, *row_needs; /* required of two oscillators and of a row, or of a study, in words */
 	bool (*applies)(const struct pound_scene *);
 	measure *of, *over;          /* of two oscillators: the output is mean(of) / mean(over) */
-	row_measure *row, *row_over; /* of a row of buildings likewise */
+	row_measure *row, *row_over; /* the same for a row of buildings */
 	bool places, contacts;       /* of a row: one output for each place, for each contact */
 	bool ordinates;              /* one output for each frequency of the spectrum */
 	unsigned asks;               /* of enum pound_output_ask */

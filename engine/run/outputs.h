@@ -1,4 +1,4 @@
-/* outputs.h - from the responses to the signals of a scene to its outputs. */
+/* outputs.h - outputs of a scene from its responses to signals. */
 #ifndef OUTPUTS_H
 #define OUTPUTS_H
 

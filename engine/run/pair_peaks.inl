@@ -33,7 +33,7 @@ LANE_INLINE void lanes_put(vd from, double to[W])
 	__builtin_memcpy(to, &from, sizeof from);
 }
 
-/* Follows W pairs from `first` on; lanes beyond the last one repeat it. */
+/* Follows W pairs from `first` on; lanes beyond the last pair repeat it. */
 static void group_follow(const struct pound_pairs *all, int first, struct pound_pair_peaks *peaks)
 {
 	const struct pound_pair_maps *maps = &all->maps;

@@ -44,7 +44,7 @@ struct pound_request {
 	struct pound_task_result *results;  /* (tasks) */
 	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; NULL: no output reads them) */
 	double (*free_pair)
-	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; likewise) */
+	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; none: not read) */
 	struct pound_pairs pairs;    /* linear pairs to follow without contact */
 	void *scratch;               /* of the solver */
 	int n_before, n_rows_before; /* number of marches without pounding, which come first */

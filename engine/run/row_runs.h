@@ -37,7 +37,7 @@ struct pound_modal_known {
 /* POUND_CHAIN_* bits that a study requests: a response study all except energies, other studies what their outputs read. */
 unsigned pound_row_asked(const struct pound_study *study);
 
-/* The marches of a block; equal ones are run once. */
+/* The marches of a block; equal marches are run once. */
 struct pound_row_asks {
 	int n, done;                        /* marches requested, and run */
 	struct pound_chain_task *tasks;     /* (n) */
