@@ -1,4 +1,4 @@
-/* given.h - sensitivity indices from samples that were drawn elsewhere: an output for each, and no design behind them.
+/* given.h - sensitivity indices from given data: samples drawn elsewhere, one output value each, no design.
  *
  *   inputs -> check, once -> indices of each output
  *
@@ -13,11 +13,11 @@ enum { POUND_GIVEN_ROWS_MIN = 64 };
 /* Samples of independent draws of the inputs. */
 struct pound_given {
 	int n_rows, n_inputs;       /* [POUND_GIVEN_ROWS_MIN, POUND_ROWS_MAX], [1, POUND_INPUTS_MAX] */
-	const double *x;            /* finite, of two values of an input at least  (n_rows x n_inputs) */
-	struct pound_input *inputs; /* distributed as x is, by pound_given_inputs  (n_inputs) */
+	const double *x;            /* finite; each input has at least two distinct values  (n_rows x n_inputs) */
+	struct pound_input *inputs; /* empirical distributions of x, by pound_given_inputs  (n_inputs) */
 };
 
-/* What there is to say about the samples: X(enumerator, sentence). */
+/* Notes on the samples: X(enumerator, sentence). */
 // clang-format off
 #define POUND_GIVEN_SAMPLES_NOTES(X)                                                  \
 	X(POUND_GIVEN_NOISE,                                                              \
@@ -29,7 +29,7 @@ struct pound_given {
 	X(POUND_GIVEN_SERIAL,                                                             \
 	  "successive samples are correlated, as in a Markov chain: intervals are too narrow")
 
-/* What there is to say about the indices of an output. */
+/* Notes on the indices of an output. */
 #define POUND_GIVEN_NOTES(X)                                                          \
 	X(POUND_GIVEN_CONSTANT,                                                           \
 	  "the output is the same for every sample, so it has no indices")                \
@@ -48,14 +48,14 @@ enum pound_given_note { POUND_GIVEN_NOTES(X) POUND_GIVEN_N_NOTES };
 
 struct pound_given_checks {
 	int pair[2];        /* inputs that depend most on each other; -1: there is one input */
-	double correlation; /* of their ranks */
+	double correlation; /* of the pair's ranks (Spearman) */
 	unsigned notes;     /* bits 1 << enum pound_given_samples_note */
 };
 
 struct pound_given_indices {
 	double mean, variance;
 	double explained;  /* cross-validated R2 of the polynomial; NAN: none was fitted */
-	int degree, terms; /* of it */
+	int degree, terms; /* of the polynomial */
 	unsigned notes;    /* bits 1 << enum pound_given_note */
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX]; /* (n_inputs) each */
 	int n_second;                                                           /* 0: cannot be estimated */
@@ -63,12 +63,12 @@ struct pound_given_indices {
 	struct pound_curve curves[POUND_INPUTS_MAX];                            /* (n_inputs) */
 };
 
-/* The distributions of the samples; values: for them to point to  (2 x n_inputs x n_rows); order: (n_rows) */
+/* Sets the distributions of the inputs; values: their memory  (2 x n_inputs x n_rows); order: scratch  (n_rows) */
 void pound_given_inputs(struct pound_given *given, double *values, size_t *order);
 
 size_t pound_given_scratch(int n_rows, int n_inputs); /* doubles */
 void pound_given_check(const struct pound_given *given, double *scratch, struct pound_given_checks *checks);
-/* y: (n_rows), finite; the scratch as the check left it */
+/* y: (n_rows), finite; scratch: as pound_given_check left it */
 void pound_given_estimate(const struct pound_given *given, const struct pound_given_checks *checks,
                           const double *y, double *scratch, struct pound_given_indices *indices);
 

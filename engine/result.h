@@ -1,4 +1,4 @@
-/* result.h - a result: what the engine gives back.  Units and shapes as in study.h; NAN where there is no value. */
+/* result.h - a result: the output of the engine.  Units and shapes as in study.h; NAN where there is no value. */
 #ifndef RESULT_H
 #define RESULT_H
 
@@ -28,30 +28,30 @@
 	X(end_v2,                  "v2_m_s",                 -1)
 // clang-format on
 
-/* What two oscillators have as a row of one-story buildings, where an output reads it; a wall has 0. */
+/* Quantities of two oscillators run as a row of one-story buildings, if an output reads them; 0 for a wall. */
 struct pound_pair_floors {
-	double acceleration[POUND_OSCILLATORS]; /* largest absolute one [m/s2] */
+	double acceleration[POUND_OSCILLATORS]; /* largest absolute acceleration [m/s2] */
 	double acceleration_free[POUND_OSCILLATORS];
-	double residual[POUND_OSCILLATORS]; /* displacement at which the spring has no force, at the end [m] */
-	double lost[POUND_OSCILLATORS];     /* by the laws [J] */
-	double lost_contact, work_in;       /* in contacts, and put in by the ground [J] */
-	double force, approach;             /* largest of a contact [N], and speed at which one begins [m/s] */
+	double residual[POUND_OSCILLATORS]; /* displacement without spring force, at the end [m] */
+	double lost[POUND_OSCILLATORS];     /* energy dissipated by the laws [J] */
+	double lost_contact, work_in;       /* dissipated in contacts, and input by the ground [J] */
+	double force, approach;             /* largest contact force [N], largest approach speed [m/s] */
 };
 
-/* One signal's response.  NAN where the scene has no such value (the yield displacement of a linear law). */
+/* One signal's response.  NAN if the scene has no such value (the yield displacement of a linear law). */
 struct pound_response {
 #define X(member, name, oscillator) double member;
 	POUND_MEASURES(X)
 #undef X
-	// of outputs that read them, else 0
+	// 0 unless an output reads them
 	double gap_needed;    /* largest u_1 - u_2 without contact [m] */
 	double relative_free; /* largest |u_1 - u_2| without contact [m] */
 	double
-	    energy_residual; /* energy put in and not found again, over the most there was along the way; NAN: not computed */
+	    energy_residual; /* input energy less all energy accounted for, over the largest energy on the way; NAN: not computed */
 	struct pound_pair_floors floors;
 };
 
-// one row per quantity of one storey, and of the floor above it, of a row of buildings: X(member, name in a result)
+// one row per quantity of one story, and of the floor above it, of a row of buildings: X(member, name in a result)
 // clang-format off
 #define POUND_STOREY_MEASURES(X)                                                          \
 	X(drift_max,             "drift_max_m")                                               \
@@ -81,22 +81,22 @@ struct pound_response {
 	X(first_speed,           "first_speed_m_s")
 // clang-format on
 
-/* One signal's response of a storey and the floor above it.  NAN as above. */
+/* One signal's response of a story and the floor above it.  NAN as above. */
 struct pound_storey_response {
 #define X(member, name) double member;
 	POUND_STOREY_MEASURES(X)
 	POUND_FLOOR_MEASURES(X)
 #undef X
-	double lost; /* by the story's law [J]; NAN: no output reads energies */
+	double lost; /* dissipated by the story's law [J]; NAN: no output reads energies */
 };
 
 struct pound_contact_response {
 #define X(member, name) double member;
 	POUND_CONTACT_MEASURES(X)
 #undef X
-	double speed_max; /* largest speed at which a contact begins [m/s] */
-	double lost;      /* in contacts [J]; NAN as above */
-	// without contact, NAN: not asked
+	double speed_max; /* largest approach speed [m/s] */
+	double lost;      /* dissipated [J]; NAN as above */
+	// without contact, NAN: not requested
 	double gap_needed;                    /* largest closing displacement [m] */
 	double level_free[POUND_OSCILLATORS]; /* largest displacements of both buildings at its levels [m] */
 };
@@ -104,13 +104,13 @@ struct pound_contact_response {
 /* One signal's response of a row of buildings. */
 struct pound_row_response {
 	double energy_residual;
-	double work_in;       /* by the ground [J]; NAN as above */
+	double work_in;       /* energy input by the ground [J]; NAN as above */
 	double impulse_scale; /* mass of building 0 times the frequency of its first mode [kg/s] */
 	const struct pound_storey_response *storeys;   /* by pound_row_first  (floors) */
 	const struct pound_contact_response *contacts; /* (contacts) */
 };
 
-/* A signal of a suite: which record it is, and what all its samples are times; < 0: reversed. */
+/* A signal of a suite: the record and the scale factor of its samples; < 0: reversed. */
 struct pound_suite_signal {
 	int record;
 	double factor;
@@ -128,38 +128,38 @@ struct pound_set_index {
 
 enum {
 	POUND_PAIRS_MAX = POUND_INPUTS_MAX * (POUND_INPUTS_MAX - 1) / 2,
-	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but none and all */
+	POUND_CLOSED_MAX = (1 << POUND_FACTORIAL_INPUTS_MAX) - 2, /* sets but the empty and the full */
 };
 
-/* Indices of the study's ratios and then of the inputs in none, which depend on each other; Shapley effects add up to 1. */
+/* Indices of the study's ratios, then of the inputs in no ratio.  These variables are dependent; Shapley effects add up to 1. */
 struct pound_ratio_indices {
-	int n; /* 0: none were asked, or too few rows */
+	int n; /* 0: none requested, or too few rows */
 	struct pound_estimate
 	    explained; /* share of the output's variance explained by these variables; NAN: unknown */
 	struct pound_estimate first[POUND_FACTORIAL_INPUTS_MAX], total[POUND_FACTORIAL_INPUTS_MAX],
 	    shapley[POUND_FACTORIAL_INPUTS_MAX]; /* (n) each */
 };
 
-/* Indices of the study's groups of inputs, each as of one input. */
+/* Indices of the study's groups of inputs, each group as one input. */
 struct pound_group_indices {
-	int n; /* 0: none were asked, or too few rows */
+	int n; /* 0: none requested, or too few rows */
 	struct pound_estimate first[POUND_GROUPS_MAX], total[POUND_GROUPS_MAX]; /* (n) each */
 };
 
-/* The mean output given an input: at every value of a discrete one of up to POUND_CURVE, of any other where its
- * probability is (k + 1/2) / POUND_CURVE; NAN: too few rows. */
+/* The conditional mean of the output given an input: at every value of a discrete input with up to POUND_CURVE values, else
+ * at the quantiles of probability (k + 1/2) / POUND_CURVE; NAN: too few rows. */
 enum { POUND_CURVE = 50 };
 
 struct pound_curve {
 	struct pound_estimate mean[POUND_CURVE];
 };
 
-double pound_conditional_place(int k);                                       /* that probability */
+double pound_conditional_place(int k);                                       /* (k + 1/2) / POUND_CURVE */
 int pound_conditional_points(const struct pound_distribution *distribution); /* of such a curve */
 double pound_conditional_x(const struct pound_distribution *distribution,
                            int k); /* the input's value at point k */
 
-/* Those that the design of the study can give, sets in ascending order. */
+/* Indices of sets of inputs that the study's design can estimate, sets in ascending order. */
 struct pound_set_indices {
 	int n_second, n_closed;
 	struct pound_set_index second[POUND_PAIRS_MAX]; /* second-order indices  (n_second) */
@@ -167,49 +167,49 @@ struct pound_set_indices {
 	    closed[POUND_CLOSED_MAX]; /* share of the variance that a set explains  (n_closed) */
 };
 
-/* What the indices of an output may be off by, and for want of what. */
+/* Error of the indices of an output by source. */
 // clang-format off
 #define POUND_ERRORS(X)                                                                   \
 	X(SAMPLING,    "sampling")    /* too few rows: the widest half of an interval */      \
-	X(EXCITATION,  "excitation")  /* too few signals: what their randomness adds or takes */ \
+	X(EXCITATION,  "excitation")  /* too few signals: effect of their randomness */ \
 	X(INTEGRATION, "integration") /* runs that are not exact */                           \
-	X(FAILED_ROWS, "failed_rows") /* rows left out, as if like the most extreme other */
+	X(FAILED_ROWS, "failed_rows") /* rows left out, each taken as the most extreme valid row */
 // clang-format on
 
 enum pound_error {
 #define X(row, name) POUND_ERROR_##row,
 	POUND_ERRORS(X)
 #undef X
-	    POUND_ERROR_NONE /* and how many there are */
+	    POUND_ERROR_NONE /* and their number */
 };
 
 const char *pound_error_name(int row);
-/* The one larger than all others together; unknown ones (NAN) count as 0. */
+/* The error larger than the sum of all others; unknown errors (NAN) count as 0. */
 enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE]);
 
 enum { POUND_LEVELS = 4 }; /* n/8, n/4, n/2, n rows */
 
 struct pound_accuracy {
-	int64_t runs_checked;     /* runs compared with the same on half the sample step */
-	int64_t runs_unchecked;   /* without a value in one of the two */
-	double difference_median; /* of the output of one run, relative; NAN: none */
+	int64_t runs_checked;     /* runs compared with a run on half the sample step */
+	int64_t runs_unchecked;   /* one of the two runs has no value */
+	double difference_median; /* relative, of the output of one run; NAN: none */
 	double difference_largest;
-	double variance_share; /* of such differences in the output's variance */
+	double variance_share; /* variance of these differences over the output's variance */
 	struct {
-		double first_change, total_change; /* by the differences, at most */
+		double first_change, total_change; /* caused by the differences, upper bound */
 		double first_dropped,
-		    total_dropped; /* by rows left out, if like the one that moves it most; NAN: unknown */
+		    total_dropped; /* by rows left out, if like the row that changes the index most; NAN: unknown */
 		double first_half[POUND_LEVELS], total_half[POUND_LEVELS]; /* half widths of intervals; NAN: none */
 	} inputs[POUND_INPUTS_MAX];                                    /* (n_inputs) */
-	int rows[POUND_LEVELS];                                        /* behind the half widths; 0: too few */
+	int rows[POUND_LEVELS];                                        /* used for the half widths; 0: too few */
 	double slope;                    /* of log half width over log rows; NAN: undefined */
-	double rows_to_halve;            /* the half widths; NAN: undefined, or out of reach */
+	double rows_to_halve;            /* to halve the half widths; NAN: undefined, or out of reach */
 	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
 };
 
-/* Columns of indices, one row each: X(enumerator, name in a result).  The raw ones are the plain protocol's and hold the
- * noise of few signals; the pick-freeze ones are the same without it; S1 and ST are the sharpest from the same runs.
- * S2_excitation is the second-order index of the input and one signal; Shapley effects add up to 1. */
+/* Index columns, one row each: X(enumerator, name in a result).  The raw columns come from the plain protocol and include
+ * the noise of few signals; the pick-freeze columns are corrected for it; S1 and ST have the smallest standard error from
+ * the same runs.  S2_excitation is the second-order index of the input and one signal; Shapley effects add up to 1. */
 // clang-format off
 #define POUND_INDICES(X)                                                                  \
 	X(POUND_S1,             "S1")                                                         \
@@ -221,22 +221,22 @@ struct pound_accuracy {
 	X(POUND_S2_EXCITATION,  "S2_excitation")                                              \
 	X(POUND_SHAPLEY,        "shapley")
 
-/* Columns of the estimator that a study names, as its formula gives them and without the noise of few signals:
- * X(enumerator, name in a result, with %s for the estimator's). */
+/* Columns of the estimator that a study names, by its formula and corrected for the noise of few signals:
+ * X(enumerator, name in a result, %s is the estimator's name). */
 #define POUND_NAMED(X)                                                                    \
 	X(POUND_NAMED_S1,           "S1_%s")                                                  \
 	X(POUND_NAMED_ST,           "ST_%s")                                                  \
 	X(POUND_NAMED_S1_CORRECTED, "S1_%s_corrected")                                        \
 	X(POUND_NAMED_ST_CORRECTED, "ST_%s_corrected")
 
-/* The excitation's randomness as an input of its own: X(enumerator, name in a result).  Of single runs the first-order
- * and the total index, and the total index, or share, that is left in the means over the study's signals. */
+/* The excitation's randomness as an additional input: X(enumerator, name in a result).  First-order and total index in
+ * single runs, and the total index (variance fraction) that remains in the means over the study's signals. */
 #define POUND_SHARES(X)                                                                   \
 	X(POUND_SHARE_FIRST_ONE, "S1_one_signal")                                             \
 	X(POUND_SHARE_TOTAL_ONE, "ST_one_signal")                                             \
 	X(POUND_SHARE_TOTAL,     "ST_mean_of_signals")
 
-/* What there is to say about the indices of an output: X(enumerator, sentence). */
+/* Notes on the indices of an output: X(enumerator, sentence). */
 #define POUND_NOTES(X)                                                                    \
 	X(POUND_NOTE_NO_ROWS,                                                                 \
 	  "all rows of the design failed, so there are no indices")                       \
@@ -279,11 +279,11 @@ enum pound_named { POUND_NAMED(X) POUND_N_NAMED };
 
 struct pound_indices {
 	double mean, variance; /* of the output over the rows of A and B */
-	double noise_share;    /* of the variance over all samples, due to the excitation; NAN: one signal */
-	double ratio_bias;     /* of the outputs as ratios of means of few signals, on average; NAN: one signal */
-	unsigned notes;        /* bits 1 << enum pound_note */
+	double noise_share; /* fraction of the variance over all samples due to the excitation; NAN: one signal */
+	double ratio_bias;  /* mean bias of the outputs as ratios of means over few signals; NAN: one signal */
+	unsigned notes;     /* bits 1 << enum pound_note */
 	double
-	    rows_needed; /* for intervals wide enough, where few rows hold most of the variance; NAN: no more */
+	    rows_needed; /* for valid intervals, if few rows hold most of the variance; NAN: the rows suffice */
 	struct pound_estimate share[POUND_N_SHARES];
 	struct pound_estimate *index[POUND_N_INDICES]; /* (n_inputs) each */
 	struct pound_estimate
@@ -291,85 +291,85 @@ struct pound_indices {
 	struct pound_set_indices sets;
 	struct pound_ratio_indices ratios;
 	struct pound_group_indices groups;
-	struct pound_curve *curves;                /* (n_inputs); NULL: not wanted */
+	struct pound_curve *curves;                /* (n_inputs); NULL: not requested */
 	struct pound_estimate impulse_correlation; /* of an ordinate with the largest impulse; NAN: no ordinate */
 	struct pound_accuracy accuracy;
 };
 
-/* over the signals, relative; NAN: the scene has no such value, or no signal gave one */
+/* relative error over the signals; NAN: the scene has no such value, or no signal gave one */
 struct pound_deviation {
 	double mean, largest;
 };
 
-/* One setting of one solver against the event solver; an error is that of the left body, or of the top of the left building. */
+/* Errors of one setting of one solver against the event solver, at the left body or the top of the left building. */
 struct pound_trial {
-	struct pound_solver solver;                           /* step: the one that was taken */
+	struct pound_solver solver;                           /* step: as used */
 	int runs_failed;                                      /* signals without a result */
-	struct pound_deviation displacement, demand, impulse; /* of the largest ones */
+	struct pound_deviation displacement, demand, impulse; /* of the peak values */
 	struct pound_deviation
-	    history;  /* largest difference of displacements in the first seconds over the largest */
+	    history;  /* largest displacement difference in the first seconds over the largest displacement */
 	double order; /* slope of log mean history error over log setting, from the trial before; NAN: none */
-	double cpu;   /* of a run [s]; NAN: there is no clock */
+	double cpu;   /* CPU time of a run [s]; NAN: no clock */
 };
 
 enum { POUND_RULES = 3 };
 
-/* What a rule asks for. */
+/* The gap that a rule requires. */
 struct pound_rule {
 	double gap;                        /* [m] */
-	double over;                       /* over the mean gap needed */
-	struct pound_estimate probability; /* to pound with it */
+	double over;                       /* gap over the mean gap needed */
+	struct pound_estimate probability; /* of pounding with this gap */
 };
 
-/* How wide a gap of a scene has to be: from its runs, those of matrices A and B of a design. */
+/* How wide a gap of a scene has to be, from its runs; with a design, from the runs of matrices A and B. */
 struct pound_needs {
-	int64_t runs;                           /* that have a result */
-	int clusters;                           /* of runs that are independent of each other's */
+	int64_t runs;                           /* with a result */
+	int clusters;                           /* mutually independent clusters of runs */
 	double mean, deviation, largest;        /* of the gap needed [m] */
-	double displacement[POUND_OSCILLATORS]; /* means of the largest without contact, of both sides [m] */
-	double correlation; /* of both in white noise, by frequencies and damping, of buildings of first modes */
+	double displacement[POUND_OSCILLATORS]; /* mean peaks without contact, left and right [m] */
+	double correlation; /* of both sides in white noise, from frequencies and damping (of first modes) */
 	struct pound_rule rules[POUND_RULES];
-	struct pound_estimate *probability; /* to pound with each gap of the result  (n_gaps) */
+	struct pound_estimate *probability; /* of pounding with each gap of the result  (n_gaps) */
 	struct pound_estimate *gap;         /* for each probability of the study [m]  (n_probabilities) */
-	double *needed;                     /* by each run without a design, NAN: failed [m]  (n_signals) */
+	double *needed;                     /* without a design: by each run, NAN: failed [m]  (n_signals) */
 };
 
 /* The fragility curve of a gap: lognormal over the intensity. */
 struct pound_fragility {
-	struct pound_estimate median, dispersion; /* NAN: the counts have none */
+	struct pound_estimate median, dispersion; /* NAN: the counts define none */
 	struct pound_estimate rate;               /* mean annual rate of pounding [1/a]; NAN: no hazard curve */
 };
 
-/* The fragility curves of the cells that differ in their intensity alone. */
+/* The fragility curves of cells that differ only in intensity. */
 struct pound_stripe_set {
-	int cell;                          /* the first of them */
-	int contact;                       /* of a row of buildings, else 0 */
-	struct pound_fragility *curves;    /* of each gap of the result  (n_gaps) */
-	struct pound_estimate *return_gap; /* of each return period [m]  (n_periods) */
-	double beyond;                     /* annual rate of earthquakes beyond the intensities */
+	int cell;                          /* the first of these cells */
+	int contact;                       /* index in a row of buildings, else 0 */
+	struct pound_fragility *curves;    /* for each gap of the result  (n_gaps) */
+	struct pound_estimate *return_gap; /* for each return period [m]  (n_periods) */
+	double beyond;                     /* annual rate of earthquakes above the largest intensity */
 };
 
 struct pound_separation_result {
 	int n_gaps;
 	double gaps[POUND_GAPS_MAX]; /* [m] */
-	struct pound_needs *needs;   /* of each cell and contact  (n_cells x pound_study_gaps) */
+	struct pound_needs *needs;   /* for each cell and contact  (n_cells x pound_study_gaps) */
 	int n_sets;
 	struct pound_stripe_set *sets; /* (n_sets) */
 };
 
 struct pound_cell {
 	double sweep[POUND_SWEEPS_MAX];     /* the value of each sweep, (n_sweeps) used */
-	int64_t runs, runs_failed;          /* pounding runs asked, and those among them without a result */
+	int64_t runs, runs_failed;          /* pounding runs requested, and failed ones among them */
 	int rows_dropped;                   /* rows of the design left out because one of their runs failed */
-	int n_signals;                      /* response: signals */
+	int n_signals;                      /* response: number of signals */
 	struct pound_response *signals;     /* response: (n_signals) */
-	struct pound_row_response *rows;    /* response of a row of buildings, instead: (n_signals) */
-	struct pound_suite_signal *records; /* response under a suite: which record each signal is  (n_signals) */
-	double outputs[POUND_OUTPUTS_MAX];  /* without a design: ratio of means of each asked output */
+	struct pound_row_response *rows;    /* response of a row of buildings: instead of signals  (n_signals) */
+	struct pound_suite_signal *records; /* response under a suite: the record of each signal  (n_signals) */
+	double outputs[POUND_OUTPUTS_MAX];  /* without a design: ratio of means of each output */
 	struct pound_indices *indices;      /* sensitivity: (n_outputs) */
 };
 
-/* What was asked by the samples of the design and what was run after nothing is run twice. */
+/* Work requested by the samples of the design, and work done: equal tasks are run once. */
 // clang-format off
 #define POUND_STAGES(X)                                                                   \
 	X(signals,    "ground motions")                                                       \
@@ -388,21 +388,21 @@ struct pound_work {
 #define X(member, text) struct pound_stage_work member;
 	POUND_STAGES(X)
 #undef X
-	struct pound_stage_work free_pair_runs; /* both bodies together without pounding, with their checks */
-	struct pound_stage_work chain_runs;     /* both bodies as one-story buildings, likewise */
-	int64_t never_touching; /* pounding runs not made: the free responses never close the gap */
-	int64_t moving_alike;   /* pounding runs not made: equal oscillators never touch with force */
-	int64_t yield_given;    /* linear responses not made: the yield displacement they would give is known */
-	int64_t linear_unasked; /* linear responses of the right oscillator not made: no output needs them */
-	int64_t nonlinear_unasked; /* its nonlinear ones likewise */
-	int64_t contacts;          /* contacts in the runs made */
+	struct pound_stage_work free_pair_runs; /* both bodies together without pounding, checks included */
+	struct pound_stage_work chain_runs;     /* both bodies as one-story buildings, checks included */
+	int64_t never_touching;    /* pounding runs skipped: the free responses never close the gap */
+	int64_t moving_alike;      /* pounding runs skipped: equal oscillators never touch with force */
+	int64_t yield_given;       /* linear responses skipped: the yield displacement is already known */
+	int64_t linear_unasked;    /* linear responses of the right oscillator skipped: no output needs them */
+	int64_t nonlinear_unasked; /* nonlinear ones likewise */
+	int64_t contacts;          /* contacts in the runs done */
 	int64_t yield_searches;    /* for the yield displacement of a target demand, 2 corrections or more */
-	int64_t yield_jumps;       /* of these, ended off it: the demand jumps over it */
-	int64_t yield_missed;      /* likewise: the corrections were used up */
-	int64_t failed[POUND_N_FAILURES]; /* pounding runs asked that have no result */
+	int64_t yield_jumps;       /* of these, ended off the target: the demand jumps over it */
+	int64_t yield_missed;      /* ended off the target: the corrections were used up */
+	int64_t failed[POUND_N_FAILURES]; /* failed pounding runs among those requested */
 };
 
-/* One look at the intervals of a design that grows: the widest one of an S1 or ST. */
+/* One interim analysis of a growing design: the widest interval of an S1 or ST. */
 struct pound_look {
 	int rows;
 	double half_width; /* infinite: an index has no interval */
@@ -410,7 +410,7 @@ struct pound_look {
 	enum pound_index index;
 };
 
-/* Spectra of the left floor, one row each: X(row, name in a result).  The first ones are integrated. */
+/* Spectra of the left floor, one row each: X(row, name in a result).  The first three are integrated. */
 // clang-format off
 #define POUND_SPECTRA(X)                                                                  \
 	X(POUNDING,    "pounding")    /* of its absolute acceleration */                      \
@@ -429,39 +429,39 @@ enum pound_spectrum_row {
 	POUND_N_INTEGRATED = POUND_SPECTRUM_FREE + 1
 };
 
-/* Pseudo-accelerations over the signals [m/s2], NAN: no signal has one  (n frequencies each) */
+/* Statistics of the pseudo-acceleration over the signals [m/s2], NAN: no signal has a value  (n frequencies each) */
 struct pound_floor_spectrum {
 	double *mean, *p16, *p84;
-	double *error; /* largest relative difference from the same on half the sample step, of integrated rows */
+	double *error; /* largest relative difference from runs on half the sample step, of integrated rows */
 };
 
 struct pound_floor_result {
 	struct pound_floor_spectrum spectra[POUND_N_SPECTRA];
-	double frequency_hz; /* first one of the body that the floor is of, without pounding */
+	double frequency_hz; /* first frequency of the floor's body or building, without pounding */
 	int signals, signals_failed, signals_checked;
 	double impulse_mean; /* mean of the largest impulses [N s] */
-	double pulses_mean;  /* mean number of pulses of the idealised train */
+	double pulses_mean;  /* mean number of pulses of the idealized train */
 };
 
-/* How many signals a row has, and why: possible numbers, and the index that decided the chosen one. */
+/* The number of signals per row and its reason: the candidate numbers, and the index that decided. */
 enum { POUND_SPLITS = 12 };
 
 struct pound_split_choice {
 	int signals, rows;
-	double half_width, bias; /* foreseen of the worst index; the bias is in the half width */
+	double half_width, bias; /* predicted for the worst index; the half width includes the bias */
 	int64_t runs;            /* without the pilot's */
 };
 
 struct pound_split {
-	int signals;    /* of each row; 0: the study says how many */
-	int rows;       /* of the design, or to begin with */
+	int signals;    /* of each row; 0: given by the study */
+	int rows;       /* of the design; of a growing design, initially */
 	int pilot_rows; /* of six signals each */
 	int64_t pilot_runs;
 	int n_choices;
 	struct pound_split_choice choices[POUND_SPLITS];
-	struct pound_look decided_by; /* half width and rows as foreseen; negative: the pilot saw no variance */
+	struct pound_look decided_by; /* half width and rows as predicted; negative: no variance in the pilot */
 	double between, within,
-	    pairs; /* parts of the variance of the index that decided, of one row: rows + signals / R + pairs / (R (R - 1)) */
+	    pairs; /* variance components of the deciding index, per row: rows + signals / R + pairs / (R (R - 1)) */
 };
 
 struct pound_result {
@@ -470,11 +470,11 @@ struct pound_result {
 	int n_looks;              /* 0: the design does not grow */
 	struct pound_look *looks; /* (n_looks) */
 	const double *
-	    references; /* of the records of a suite: what their intensity is divided by [m/s2]  (n_records); NULL:
-	                             they are not scaled */
+	    references; /* reference intensity of each record of a suite, the divisor of the target [m/s2]  (n_records);
+	                             NULL: not scaled */
 	const double *
-	    differences; /* of the records of a suite: largest displacement of a body over that on the record's band-limited
-	                              interpolation at twice its rate, less 1, of all bodies the largest one  (n_records); NULL: there are no records */
+	    differences; /* of each record of a suite: largest displacement of a body over the largest on the record's band-limited
+	                              interpolation at twice its rate, less 1; the largest over all bodies  (n_records); NULL: no records */
 	int n_cells;
 	struct pound_cell *cells; /* (n_cells) */
 	int n_trials;

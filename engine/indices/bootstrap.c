@@ -1,11 +1,11 @@
 /* bootstrap.c - 95 % intervals of a statistic of row means, by resampling whole rows.
  *
- * 1. Rows are drawn with replacement, as many as there are; which ones is a function of (seed, resample) alone.
- * 2. The statistic of the resample's means is one of POUND_RESAMPLES values.
- * 3. The interval goes from their 2.5 % to their 97.5 % quantile.
+ * 1. A resample draws n_rows rows with replacement; the draws are a function of (seed, resample) alone.
+ * 2. Each resample gives one value of the statistic of its means.
+ * 3. The interval goes from the 2.5 % to the 97.5 % quantile of these values.
  *
- * Efron, Tibshirani 1993, An introduction to the bootstrap, chapter 13; rows of independent or Latin hypercube
- * designs only (rows of a quasi-random design are no sample: intervals would be several times too wide; jackknife.c). */
+ * Efron, Tibshirani 1993, An introduction to the bootstrap, chapter 13.  For random and Latin hypercube designs only: rows
+ * of a quasi-random design are not a random sample, and intervals would be several times too wide (see jackknife.c). */
 #include "engine/indices/indices.h"
 
 #include "engine/indices/bootstrap_sums.h"
@@ -52,12 +52,12 @@ static void moments_means(const struct pound_tiles *moments, int n_moments, doub
 
 /* Quantile of n values, linear between the order statistics around (n - 1) p.
  *
- * Valid    p up to 2.5 % or from 97.5 %: the few values beyond it are kept in order as they come
+ * Valid    p up to 2.5 % or from 97.5 %: only the few values beyond the quantile are kept, sorted by insertion
  */
 static double quantile(const double *value, int n, double p)
 {
 	const int below = (int)((n - 1) * p), up = p < 0.5 ? 1 : -1;
-	// places of the two from the end that is near, whose values count as the smallest
+	// ranks of the two order statistics, counted from the nearer end
 	const int at = up > 0 ? below : n - 1 - below, next = below < n - 1 ? at + up : at;
 	const int wanted = (at > next ? at : next) + 1;
 	double kept[ENDS_MAX];
@@ -89,10 +89,10 @@ size_t pound_bootstrap_scratch(int n_rows, int n_moments, int n_values)
  * Returns  estimates  (n_values)      low and high are NAN where no resample defines the value
  * Memory   scratch    (pound_bootstrap_scratch)
  *
- * Resamples for which a value is not defined (all rows alike) are left out of its quantiles; a value that is not defined
- * has no interval.
+ * Resamples with an undefined value (all rows equal) are left out of its quantiles; a value undefined for the rows
+ * themselves has no interval.
  *
- * Valid    Rows that are independent or of one Latin hypercube; mildly wide for the latter (3-13 %)
+ * Valid    Independent rows or one Latin hypercube, for which intervals are 3-13 % too wide
  * Source   percentile interval, Efron, Tibshirani 1993, section 13.3
  * Test     unit_bootstrap: intervals_of_a_mean_are_those_of_the_normal_law
  */
@@ -132,10 +132,10 @@ void pound_bootstrap_interval(const struct pound_statistic *statistic, int n_row
 		}
 }
 
-/* A statistic's values, with 95 % intervals by what its rows are.
+/* A statistic's values, with 95 % intervals by the jackknife for grouped rows, else by the bootstrap.
  *
- * Given    scatter    -               groups: by leaving each out (jackknife.c); none: by resampling rows
- *          the rest                   as pound_bootstrap_interval has it
+ * Given    scatter    -               groups: leave one out (jackknife.c); none: resample rows
+ *          the rest                   as for pound_bootstrap_interval
  * Returns  estimates  (n_values)
  * Memory   scratch    (pound_bootstrap_scratch)
  *

@@ -1,4 +1,4 @@
-/* bootstrap_sums.c - sums over resampled rows at the widest lanes of this machine. */
+/* bootstrap_sums.c - sums over resampled rows: dispatch to a lane count. */
 #include "engine/indices/bootstrap_sums.h"
 #include "engine/numeric/cpu_width.h"
 

@@ -1,4 +1,4 @@
-/* resample.h - means of columns over rows that are drawn with replacement, many resamples one after the other. */
+/* bootstrap_sums.h - sums of columns over rows drawn with replacement, for groups of resamples. */
 #ifndef BOOTSTRAP_SUMS_H
 #define BOOTSTRAP_SUMS_H
 
@@ -15,14 +15,14 @@ enum {
 struct pound_tiles {
 	int n_rows, n_tiles;
 	double *tile;            /* (n_tiles x n_rows x POUND_TILE), 64-byte aligned */
-	const atomic_bool *stop; /* looked at throughout: when it is set sums are not to be used; NULL: never */
+	const atomic_bool *stop; /* checked throughout: if set, the sums must not be used; NULL: never */
 };
 
-/* Sums of the columns over POUND_RESAMPLE_GROUP resamples from number `first`, each of as many rows as there are;
- * 64-byte aligned.  sum: (POUND_RESAMPLE_GROUP x n_tiles x POUND_TILE), the same bits for any width of cpu_width.h */
+/* Sums of the columns over POUND_RESAMPLE_GROUP resamples from number `first`, each of n_rows draws.
+ * sum: (POUND_RESAMPLE_GROUP x n_tiles x POUND_TILE), 64-byte aligned, the same bits for any width of cpu_width.h */
 void pound_bootstrap_sums(int width, const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
 
-/* resample.inl, compiled once for each */
+/* bootstrap_sums.inl, compiled once for each lane count */
 void pound_bootstrap_sums_w8(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
 void pound_bootstrap_sums_w4(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);
 void pound_bootstrap_sums_w1(const struct pound_tiles *tiles, uint64_t seed, int first, double *sum);

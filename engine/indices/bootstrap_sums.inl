@@ -1,8 +1,8 @@
 /* bootstrap_sums.inl - rows drawn with replacement, and sums over them.
  *
- * 1. Which segment of rows each draw falls into comes first, then the rows within the segments: the same law as drawing
- *    from all rows, and a segment is read from memory once for a group of resamples, however many rows there are.
- * 2. Which rows are drawn is a function of (seed, resample) alone. */
+ * 1. The segment of each draw is drawn first, then the rows within the segments: the same distribution as drawing from
+ *    all rows, but a segment is read from memory only once per group of resamples, however many rows there are.
+ * 2. The rows drawn are a function of (seed, resample) alone. */
 #include "engine/indices/bootstrap_sums.h"
 
 #include "engine/numeric/lanes.h"
@@ -11,7 +11,7 @@
 
 #include <string.h>
 
-// a segment of rows and its tiles stay in the cache while they are drawn from
+// the tiles of a segment stay in the cache while its rows are drawn
 enum {
 	SEGMENT = 1024,
 	SEGMENTS_MAX = POUND_RESAMPLE_ROWS_MAX / SEGMENT,
@@ -19,7 +19,7 @@ enum {
 	DRAWS_PER_WORD_MAX = 8,
 };
 
-/* Draws of whole numbers below n, in order; several from each 64-bit word. */
+/* A sequence of random integers below n; several from each 64-bit word. */
 struct draws {
 	philox4x64_key_t key;
 	philox4x64_ctr_t counter;
@@ -27,10 +27,10 @@ struct draws {
 	int per_word;
 };
 
-/* Draws below n at an address of their own.
+/* Draws below n from a random stream of their own.
  *
- * A word w yields hi(w n), then hi(lo(w n) n), and so on, for as long as n^k leaves ten bits to spare; words whose
- * last low half falls below 2^64 mod n^k are refused, so that all numbers are equally likely.
+ * A word w yields hi(w n), then hi(lo(w n) n), and so on, as long as n^k leaves ten bits to spare; words whose last low
+ * half is below 2^64 mod n^k are rejected, so that all numbers are equally likely.
  *
  * Source   Brackett-Rozinsky, Lemire 2024, Softw. Pract. Exper. 55(1), 66-77
  * Test     unit_bootstrap: rows_are_drawn_as_often_as_a_multinomial_says
@@ -48,8 +48,7 @@ static struct draws draws_below(int n, uint64_t seed, int resample, int segment)
 	return draws;
 }
 
-/* At least `wanted` further draws; the ones beyond it belong to no resample.  draw has room for
- * wanted + 4 DRAWS_PER_WORD_MAX. */
+/* Fills at least `wanted` further draws; surplus draws are not used.  draw: (wanted + 4 DRAWS_PER_WORD_MAX) */
 static void draws_fill(struct draws *draws, int wanted, uint32_t *draw)
 {
 	const uint64_t n = draws->n;
@@ -67,7 +66,7 @@ static void draws_fill(struct draws *draws, int wanted, uint32_t *draw)
 	}
 }
 
-// vectors of a row of a tile; every column has its own lane, so that their width changes no sum
+// vectors of a tile's row; every column has its own lane, so that the vector width changes no sum
 typedef double columns __attribute__((vector_size(W > 1 ? 8 * W : 16), may_alias));
 enum { VECTORS = POUND_TILE * sizeof(double) / sizeof(columns) };
 
@@ -90,7 +89,7 @@ static void tile_add(const double *tile, const uint32_t *draw, int n, double *su
 		to[k] += even[k] + odd[k];
 }
 
-/* How many of a resample's draws fall into each segment of rows. */
+/* Number of a resample's draws in each segment of rows. */
 static void segment_shares(int n_rows, uint64_t seed, int resample, int *share)
 {
 	uint32_t draw[SEGMENT + 4 * DRAWS_PER_WORD_MAX];

@@ -1,10 +1,10 @@
-/* chaos_expansion.c - closed indices with a polynomial of the inputs as control variate.
+/* chaos_expansion.c - closed indices with a polynomial chaos expansion as control variate.
  *
- * 1. The rows, or their groups, fall into five folds; for each, a polynomial g of the inputs is fitted to the outputs of all samples of
- *    the rows outside it (least squares, orthonormal Legendre terms, "polynomial chaos").
- * 2. The closed parts of g's variance are known exactly from its coefficients.  A row's estimate is that of g plus what
- *    its samples say of the output and do not say of g, g being of the fit that has not seen the row (closed_indices.c).
- * 3. So is the mean output given an input that of g and that of the output less g (conditional_mean.c). */
+ * 1. The rows, or their groups, are dealt to five folds; for each fold a polynomial g of the inputs is fitted to the outputs of
+ *    all samples of the rows outside the fold (least squares, orthonormal Legendre terms: polynomial chaos expansion).
+ * 2. The closed variances of g follow exactly from its coefficients.  A row's estimate is the exact value of g plus the
+ *    pick-freeze estimate of the output less the same estimate of g, with the fit that excludes the row (closed_indices.c).
+ * 3. Likewise the conditional mean is the sum of the means of g and of the output less g (conditional_mean.c). */
 #include "engine/indices/indices.h"
 #include "engine/indices/legendre.h"
 
@@ -15,9 +15,9 @@
 
 enum {
 	FOLDS = 5,
-	TERMS_MAX = 300,              // a fit's work grows with the cube of its terms
-	SAMPLES_PER_TERM = 5,         // fewer and the polynomial follows the noise of the fit
-	CHUNK = POUND_LEGENDRE_CHUNK, // holds a curve too
+	TERMS_MAX = 300,              // the work of a fit grows with the cube of its terms
+	SAMPLES_PER_TERM = 5,         // with fewer the polynomial overfits
+	CHUNK = POUND_LEGENDRE_CHUNK, // also holds the points of a curve
 };
 
 /* Degree of the polynomial for a number of samples: 6 for 4 inputs and 1000 rows of 6 samples. */
@@ -34,26 +34,26 @@ int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples)
 	return degree;
 }
 
-/* The fits: where everything lies in the scratch. */
+/* The fits, and the layout of the scratch memory. */
 struct fits {
 	const struct pound_rows *rows;
 	const double *u; /* (n x 2 x n_inputs) */
 	int degree, terms, squares;
-	unsigned mask[POUND_SAMPLES_MAX]; /* of a sample: which columns are from B */
+	unsigned mask[POUND_SAMPLES_MAX]; /* of a sample: columns from B */
 	struct pound_legendre chunk;
 	double *value;        /* of the points of a chunk  (CHUNK) */
-	double *sums;         /* of the terms of twice the degree, of each fold  (FOLDS x squares) */
-	double *products;     /* of term and output, of each fold  (FOLDS x terms) */
+	double *sums;         /* of the terms up to twice the degree, of each fold  (FOLDS x squares) */
+	double *products;     /* sums of term times output, of each fold  (FOLDS x terms) */
 	double *others;       /* sums of all folds but one  (squares) */
-	double *gram;         /* and then its factor  (terms x terms) */
-	double *kept;         /* pound_chaos_expansion_kept_size; NULL: nothing is kept */
-	double *coefficients; /* of each fold's fit to the other folds  (FOLDS x terms) */
-	double *fit;          /* g at every sample, by the fit that has not seen it  (n_rows x n_samples) */
+	double *gram;         /* Gram matrix, overwritten by its factor  (terms x terms) */
+	double *kept;         /* pound_chaos_expansion_kept_size; NULL: not kept */
+	double *coefficients; /* of the fit without each fold  (FOLDS x terms) */
+	double *fit;          /* out-of-fold prediction g of every sample  (n_rows x n_samples) */
 	struct pound_closed closed;
 	double *estimates;    /* (n_rows x 2 x closed.n_columns) */
 	double *rest;         /* for closed_indices.c and conditional_mean.c */
-	double *sorted;       /* the rows by fold, as whole numbers  (n_rows) */
-	int first[FOLDS + 1]; /* of each fold among them */
+	double *sorted;       /* row numbers sorted by fold, as doubles  (n_rows) */
+	int first[FOLDS + 1]; /* first entry of each fold in `sorted` */
 };
 
 static size_t carve(struct fits *f, double *scratch, const struct pound_sample_values *shape)
@@ -91,8 +91,7 @@ static size_t carve(struct fits *f, double *scratch, const struct pound_sample_v
 	return total;
 }
 
-/* Deals the rows out to the folds; a group stays together, so that no fit has seen rows that depend on those it is used
- * for. */
+/* Deals the rows to the folds; a group stays together, so that no fit uses rows that depend on the rows it predicts. */
 static void folds_fill(struct fits *f)
 {
 	const struct pound_scatter *scatter = &f->rows->scatter;
@@ -117,7 +116,7 @@ static int row_in(const struct fits *f, int fold, int k)
 	return (int)f->sorted[f->first[fold] + k];
 }
 
-/* Enters the next samples of a fold's rows, in order, from sample number `first`; says how many. */
+/* Enters the next samples of a fold's rows, from sample number `first` on; returns how many. */
 static int chunk_enter(struct fits *f, int fold, int first)
 {
 	const int d = f->rows->n_inputs, n_samples = f->rows->n_samples;
@@ -167,10 +166,10 @@ static void sums_others(const double *sums, int n, int fold, double *others)
 	}
 }
 
-/* ---- what the outputs of one design have in common ---- */
+/* ---- factors shared by the outputs of one design ---- */
 
-/* Factor of a fold's Gram matrix; after the last the rows that it came from, fold by fold, and before the first how many
- * of them each fold has. */
+/* Factor of a fold's Gram matrix.  Before the first factor are the numbers of rows of the folds, after the last one the row
+ * numbers, by fold: the factors are valid for these rows only. */
 static double *kept_factor(const struct fits *f, int fold)
 {
 	return f->kept + FOLDS + (size_t)fold * f->terms * f->terms;
@@ -231,8 +230,8 @@ static void fits_fill(struct fits *f)
 		kept_fill(f);
 }
 
-/* Takes each fit to its mean by the share of it that the outputs it has not seen bear out, so that the noise of a fit with
- * few samples for its terms does not make the indices worse than without it.
+/* Shrinks each fit toward its mean by the regression coefficient of the outputs on the out-of-fold predictions, so that an
+ * overfitted polynomial does not make the indices worse than without it.
  *
  *   share = sum (y - b_0) (g - b_0) / sum (g - b_0)^2,  b_0: the fit's own mean
  *
@@ -262,7 +261,7 @@ static void fits_shrink(struct fits *f)
 	}
 }
 
-/* Closed parts of a fitted polynomial's variance: the squares of the coefficients of all terms in no other inputs. */
+/* Closed variances of a fitted polynomial: for each set, the sum of squared coefficients of all terms in inputs of the set. */
 static void parts_fill(const struct fits *f, int fold, double *part)
 {
 	const struct pound_closed *closed = &f->closed;
@@ -298,15 +297,15 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	}
 }
 
-enum { GAUSS = 4 }; // points of Gauss' rule: exact up to degree 7
+enum { GAUSS = 4 }; // points of the Gauss-Legendre rule: exact up to degree 7
 
 static const double gauss_place[GAUSS] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
                                           0.9305681557970263};
 static const double gauss_weight[GAUSS] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
                                            0.17392742256872692};
 
-/* Where the curve of an input is wanted: at its places, or, for the mean over each value of a discrete one, at the points
- * of Gauss' rule within it; says how many. */
+/* Probabilities at which an input's curve is evaluated: its places, or for a discrete input the Gauss points within each
+ * value's probability interval, for the mean over the interval; returns how many. */
 static int places_fill(const struct pound_rows *rows, int input, double *place)
 {
 	static_assert(GAUSS * POUND_CURVE <= CHUNK, "a chunk holds the points of every value");
@@ -323,12 +322,12 @@ static int places_fill(const struct pound_rows *rows, int input, double *place)
 	return levels > 0 ? levels * GAUSS : POUND_CURVE;
 }
 
-/* The mean of the fits given one input, less that of the outputs, at the points of a curve. */
+/* The conditional mean of the fits given one input, at the points of a curve; outputs are centered. */
 static void trend_fill(struct fits *f, int input, double *trend)
 {
 	const int d = f->closed.n_inputs;
 	int degrees[POUND_INPUTS_MAX] = {0};
-	double *coefficients = f->others; // as long at least
+	double *coefficients = f->others; // at least as long
 	for (int term = 0; term < f->terms; term++, pound_legendre_next(d, f->degree, degrees)) {
 		int elsewhere = 0;
 		for (int j = 0; j < d; j++)
@@ -351,7 +350,7 @@ static void trend_fill(struct fits *f, int input, double *trend)
 	}
 }
 
-/* The fits become what they leave of the outputs. */
+/* Conditional means; the fits are overwritten by the residuals. */
 static void curves_fill(struct fits *f, struct pound_curve *curves)
 {
 	struct pound_conditional given = {.rows = f->rows, .u = f->u, .y = f->fit};
@@ -372,11 +371,11 @@ size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape)
 /* All indices and conditional means with a cross-fitted polynomial as control variate.
  *
  * Given    rows       -                      outputs and their noise
- *          sampling   -                      u, and as `kept` (pound_chaos_expansion_kept_size) zeros, or as a call for another output of the design left it, maybe with
- *                                            other rows; NULL: nothing is kept
+ *          sampling   -                      u, and kept  (pound_chaos_expansion_kept_size): zeros, or as left by a call for another output of the design,
+ *                                            possibly with other rows; NULL: not kept
  *          noise      -                      kept or removed (NAN for one signal)
  * Returns  results    -                      with 95 % intervals from the scatter of the rows, or of their groups
- *          curves     (n_inputs)             mean outputs given each input; NULL: not wanted
+ *          curves     (n_inputs)             conditional means given each input; NULL: not requested
  * Memory   scratch    (pound_chaos_expansion_scratch)  for all rows of the design
  *
  * An input without effect has a total near 0, not exactly 0 as without the control variate.
@@ -404,9 +403,9 @@ void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct p
 		curves_fill(&fits, curves);
 }
 
-/* What the first rows' estimates alone give, with the polynomials of all rows.
+/* Indices from the estimates of the first rows alone, with the polynomials of all rows.
  *
- * Given    n          rows of them
+ * Given    n          number of first rows
  *          scratch    as pound_chaos_expansion_indices left it
  * Returns  results    -
  *

@@ -1,10 +1,10 @@
-/* closed_indices.c - closed indices of sets of inputs, and what follows from them: first-order, total, second-order indices and
- * Shapley effects.
+/* closed_indices.c - closed indices of sets of inputs, and from these first-order, total and second-order indices and Shapley
+ * effects.
  *
- * 1. Two samples of a row whose columns agree in the set u, and in no other, give an estimate of the closed part C_u of
- *    the variance, that of the mean output given the inputs in u.  All such pairs of a row are averaged.
- * 2. A row's estimates, one for each set, are columns; every index is a linear combination of their means over another.
- * 3. Intervals follow from what each row, or group of rows, adds to an index (delta method). */
+ * 1. Two samples of a row whose inputs agree exactly in the set u give an estimate of the closed variance C_u, the variance
+ *    of the conditional mean of the output given the inputs in u.  All such pairs of a row are averaged.
+ * 2. Each set is a column of row estimates; every index is a ratio of two linear combinations of the columns' means.
+ * 3. Intervals follow from the influence of each row, or group of rows, on an index (delta method). */
 #include "engine/indices/indices.h"
 
 #include <assert.h>
@@ -24,7 +24,7 @@ static int column_of(const struct pound_closed *closed, unsigned set)
 	return -1;
 }
 
-/* Adds a set, which may be there already, at its place in ascending order. */
+/* Inserts a set in ascending order, unless it is already there. */
 static void set_add(struct pound_closed *closed, unsigned set)
 {
 	int at = closed->n_columns;
@@ -37,7 +37,7 @@ static void set_add(struct pound_closed *closed, unsigned set)
 	closed->n_columns++;
 }
 
-/* Every set for few inputs; for many only those of no input, one, two, all but one, and all, and groups and what is in none. */
+/* All sets if there are few inputs; else the sets of 0, 1, 2, all but 1 and all inputs, and the groups and their complements. */
 static void sets_lay(struct pound_closed *closed)
 {
 	const unsigned all = all_of(closed);
@@ -91,7 +91,7 @@ static void pairs_fill(struct pound_closed *closed)
 		closed->known[k] = closed->set[k] == all_of(closed) || count[k] > 0;
 }
 
-/* The sets of inputs and the pairs of samples of an order of the design.
+/* The sets of inputs and the pairs of samples of a design.
  *
  * Test     unit_closed_indices: four_inputs_have_every_set_in_the_plain_design
  */
@@ -107,20 +107,20 @@ void pound_closed_init(struct pound_closed *closed, const struct pound_sample_va
 	pairs_fill(closed);
 }
 
-/* A row's estimates of the closed parts of the variance, each the exact one of a control variate g plus what the pairs of
- * samples say of the output y and do not say of g:
+/* A row's estimates of the closed variances: the exact value of a control variate g plus the estimate of the output y from
+ * pairs of samples less the same estimate of g:
  *
  *   all inputs     C = G + mean over samples of y^2 - g^2
  *   all but one, all but a group    C_u = C - (G - G_u) - mean over pairs of ((y_p - y_q)^2 - (g_p - g_q)^2) / 2
  *   other sets     C_u = G_u + mean over pairs of y_p y_q - g_p g_q
  *
  * Given    y          (n_samples)               outputs of the row
- *          control    -                         g, the mean, and as `part` the closed parts G_u
- *          noise      (n_samples x n_samples)   covariances of the outputs' noise, to take off; NULL: none
- * Returns  estimate   (2 x n_columns)           then, for each set, C from the samples of its pairs alone
+ *          control    -                         g, the mean, and as `part` the closed variances G_u
+ *          noise      (n_samples x n_samples)   covariances of the outputs' noise, to subtract; NULL: none
+ * Returns  estimate   (2 x n_columns)           C_u of each set, then for each set C from the samples of its pairs alone
  *
  * With all mixtures of A and B (a factorial design) sums and differences of these are the contrasts of the factorial
- * design: the part of a set alone is the sum over its subsets v of (-1)^(|u| - |v|) C_v.
+ * design: the interaction variance of a set u is the sum over its subsets v of (-1)^(|u| - |v|) C_v.
  *
  * Source   Sobol' 2001, Math. Comput. Simul. 55, 271-280; Jansen 1999, Comput. Phys. Commun. 117, 35-43
  * Test     unit_closed_indices: contrasts_of_the_factorial_design_have_their_golden_values
@@ -184,11 +184,11 @@ static void means_fill(const struct columns *columns)
 			columns->mean[k] += columns->estimate[(size_t)i * n + k] / n_rows;
 }
 
-/* What an index is made of: a linear combination of the columns. */
+/* The numerator of an index: a linear combination of the columns. */
 struct combination {
 	const struct pound_closed *closed;
-	unsigned constant; /* inputs of one value */
-	bool known;        /* the design has every column that is used */
+	unsigned constant; /* inputs with a single value */
+	bool known;        /* the design provides every column used */
 	double weight[POUND_CLOSED_COLUMNS_MAX];
 };
 
@@ -200,7 +200,7 @@ static struct combination combination(const struct columns *columns)
 	return c;
 }
 
-/* The column of a set, or of one that differs in inputs of one value alone: what these explain is then exactly 0. */
+/* The column of a set, or of a set that differs only in constant inputs, so that these explain exactly 0. */
 static int column_for(const struct combination *c, unsigned set)
 {
 	const unsigned all = all_of(c->closed);
@@ -209,7 +209,7 @@ static int column_for(const struct combination *c, unsigned set)
 	return column >= 0 && c->closed->known[column] ? column : column_of(c->closed, set);
 }
 
-/* Adds the closed part of a set as its column has it. */
+/* Adds the closed variance of a set, from its column. */
 static void add(struct combination *c, double weight, unsigned set)
 {
 	const int column = column_for(c, set);
@@ -218,7 +218,7 @@ static void add(struct combination *c, double weight, unsigned set)
 	c->known &= c->closed->known[column];
 }
 
-/* Adds the closed part of a set less that of no input.  The latter is 0, but its estimate errs with the others. */
+/* Adds the closed variance of a set less the one of the empty set, which is 0 but whose estimate has correlated errors. */
 static void add_closed(struct combination *c, double weight, unsigned set)
 {
 	add(c, weight, set);
@@ -229,17 +229,17 @@ static void add_closed(struct combination *c, double weight, unsigned set)
  *
  *   (N - v C_0) / (C + w (C_own - C))
  *
- * C_0 is the closed part of no input, which is 0 but for errors that it has in common with N and C; C_own is C from the samples
- * of the pairs that N is made of, which have its large outputs and no others, so that where few are large the ratio errs by
- * less.  Without an own column w is 0, and C_0 is taken off C as off the sets of N, v being the sum of their weights. */
+ * C_0 is the closed variance of the empty set: 0 except for errors that are correlated with those of N, C.  C_own is C from the
+ * samples of N's pairs only: it contains the same large outputs as N, which reduces the ratio's error if few outputs are large.
+ * Without an own column w is 0, and C_0 is subtracted from C and from each set of N, v being the sum of N's weights. */
 struct ratio {
 	const struct columns *columns;
 	const struct combination *combination;
-	int own;     /* column whose pairs the numerator is made of; -1: of many */
+	int own;     /* column whose pairs the numerator uses; -1: several columns */
 	double v, w; /* weights */
 };
 
-/* What a row adds to N and C, and to the two controls. */
+/* A row's contributions to N, C and the two control variates. */
 struct row_terms {
 	double above, below, none, change;
 };
@@ -257,8 +257,8 @@ static struct row_terms row_terms(const struct ratio *r, const double *estimate)
 	return t;
 }
 
-/* Chooses the weights: v is that of the regression of N - ratio C on C_0 and ratio (C_own - C) over the rows, in [-1, 1], so that
- * as it is best; w lies halfway between 1 and that of the regression, if it is in [0, 1], which a few large outputs mislead.
+/* Chooses the weights from the regression of N - ratio C on C_0 and ratio (C_own - C) over the rows: v is its coefficient clipped
+ * to [-1, 1]; w is the mean of 1 and its coefficient clipped to [0, 1], because a few large outputs mislead the regression.
  *
  * Source   w = 1: Janon et al. 2014, ESAIM: Probab. Stat. 18, 342-364; w = 0: Jansen 1999; the regression: control variates
  *          with estimated coefficients, Glasserman 2003, Monte Carlo methods in financial engineering, section 4.1
@@ -281,7 +281,7 @@ static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
 		zc += z * change;
 		squares += ratio * ratio * t.below * t.below;
 	}
-	// of two inputs the pairs of a set are all samples: what then changes is rounding
+	// with two inputs the pairs of a set use all samples, and the difference is rounding error
 	const bool changes = cc > DBL_EPSILON * squares;
 	const double both = nn * cc - nc * nc;
 	double v = nn > 0.0 ? zn / nn : 0.0, w = changes ? zc / cc : 0.0;
@@ -295,16 +295,16 @@ static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
 		r->w = 0.0;
 }
 
-/* The ratio of a combination to the whole variance, with the interval of its linearisation.
+/* The ratio of a combination to the whole variance, with the interval of its linearization.
  *
- * Given    own       column whose pairs the combination is made of; -1: of many
- * Returns  behind    rows behind the interval; NULL: not wanted
+ * Given    own       column whose pairs the combination uses; -1: several columns
+ * Returns  behind    effective rows of the interval; NULL: not requested
  */
 static struct pound_estimate ratio_interval(const struct combination *c, const struct columns *columns,
                                             int own, double *behind)
 {
 	const int n = columns->closed->n_columns, n_rows = columns->rows->n_rows;
-	// few rows do not tell weights, and parts of no input or of all are the controls themselves
+	// few rows do not determine weights, and the columns of the empty and the full set are the control variates themselves
 	const bool weighed = n_rows >= POUND_ROWS_MIN && own > 0 && own < n - 1;
 	struct ratio r = {.columns = columns, .combination = c, .own = weighed ? own : -1};
 	for (int k = 0; k < n; k++)
@@ -326,7 +326,7 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
 	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
 }
 
-/* Shapley effect: what input j adds to the closed part of a set, averaged over the sets of each size and the sizes.
+/* Shapley effect: increase of the closed variance by adding input j to a set, averaged over the sets of each size and the sizes.
  *
  *   phi_j = sum over sets u without j of (C_(u + j) - C_u) / (d binom(d - 1, |u|))
  *
@@ -350,7 +350,7 @@ static struct combination shapley(const struct columns *columns, int j)
 	return c;
 }
 
-/* What a set explains alone, and what it does with the others. */
+/* Closed index of a set; below, its total index. */
 static struct pound_estimate closed_of(const struct columns *columns, unsigned set, double *behind)
 {
 	struct combination c = combination(columns);
@@ -367,8 +367,8 @@ static struct pound_estimate total_of(const struct columns *columns, unsigned se
 	return ratio_interval(&c, columns, column_for(&c, all ^ set), behind);
 }
 
-/* Closed indices of the proper sets, and what a set of two explains beyond its inputs alone: all over one denominator, so that
- * they add up. */
+/* Closed indices of the proper sets, and second-order indices of the pairs: all over one denominator, so that they add
+ * up. */
 static void sets_fill(const struct columns *columns, struct pound_set_indices *sets)
 {
 	const struct pound_closed *closed = columns->closed;
@@ -395,18 +395,18 @@ size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows)
 	return 2 * (size_t)closed->n_columns + 2 * (size_t)n_rows;
 }
 
-/* All indices from the rows' estimates of closed parts, with 95 % intervals.
+/* All indices from the rows' estimates of closed variances, with 95 % intervals.
  *
- * Given    estimates  (n_rows x n_columns)       of pound_closed_row
- *          rows       -                          how many, their groups, what is rounding
- * Returns  first, total, shapley   (n_inputs)    NAN where the design lacks a set of inputs
+ * Given    estimates  (n_rows x 2 x n_columns)   of pound_closed_row
+ *          rows       -                          their number, groups and variance_floor
+ * Returns  first, total, shapley   (n_inputs)    NAN if the design lacks a set of inputs
  *          sets       -                          second-order and closed indices of the sets that the design has
- *          groups     -                          of each group as of one input
+ *          groups     -                          of each group as one input
  * Memory   scratch    (pound_closed_scratch)
  *
  *   first S_j = C_j / C     total T_j = 1 - C_(all but j) / C     second order S_jk = (C_jk - C_j - C_k) / C
  *
- * With C_0, the mean over pairs that share nothing, taken off every closed part of S_jk.
+ * C_0, the mean over pairs that share no input, is subtracted from every closed variance of S_jk.
  *
  * Test     unit_closed_indices
  */

@@ -1,10 +1,10 @@
-/* conditional_mean.c - the mean output given one input, as a curve with a 95 % band.
+/* conditional_mean.c - conditional mean of the output given one input, as a curve with a 95 % band.
  *
- * 1. Every sample of every row serves; an input is placed by its probability u, so that its distribution is uniform.
- * 2. Local-linear regression with Epanechnikov's kernel; the bandwidth is that of the least error in predicting a fifth of
- *    the rows from the others.  It is of what a trend leaves of the outputs, and the trend's curve is added.
- * 3. The band is that of half the bandwidth, whose bias is small, from what each row adds to the curve (rows, not samples,
- *    are independent) and from what halving the bandwidth has changed, which shows where the output has a kink or a jump.
+ * 1. Every sample of every row is used; the abscissa is the input's probability u, which is uniform.
+ * 2. Local-linear regression with the Epanechnikov kernel; the bandwidth minimizes the error of predicting a fifth of the
+ *    rows from the others.  The regression is applied to the outputs less a trend, and the trend's curve is added.
+ * 3. The band belongs to half the bandwidth, which has less bias: from the influence of each row on the curve (rows, not
+ *    samples, are independent) and from the change by halving the bandwidth, which is large at a kink or a jump.
  *
  * Fan, Gijbels 1996, Local polynomial modelling and its applications. */
 #include "engine/indices/indices.h"
@@ -14,26 +14,26 @@
 
 enum {
 	FOLDS = 5,
-	BINS = 64,      /* in which points are counted together to find the bandwidth */
-	BANDWIDTHS = 4, // up to 0.08: a trend's own error, in waves of a sixth, is still seen
+	BINS = 64,      /* of points, for choosing the bandwidth */
+	BANDWIDTHS = 4, // up to 0.08, to resolve a trend's own error, which has waves of length 1/6
 };
 
-// the narrowest bandwidth in u that is tried, unless rows are few, and how the next follow
+// smallest bandwidth in u (larger for few rows), ratio of successive bandwidths, least mean number of rows in a bandwidth
 static const double BANDWIDTH_LEAST = 0.03, BANDWIDTH_STEP = 1.4, ROWS_LEAST = 5.0;
 
-/* Rows behind a place: those whose A has the input there, and those whose B has. */
+/* Data points of the regression: two per row, for the input's value in A and in B. */
 struct points {
-	int n;            /* two of each row, first of A and then of B */
+	int n;            /* two per row, first A, then B */
 	double *u, *sum;  /* place, sum of the outputs  (n) each */
-	double weight[2]; /* samples behind a point of A, of B */
+	double weight[2]; /* samples per point of A, of B */
 };
 
-/* Weighted sums over points, u measured from some place: of 1, u, u^2, y, u y. */
+/* Weighted sums over points of 1, u, u^2, y, u y, with u relative to some place. */
 struct line_sums {
 	double one, u, uu, y, uy;
 };
 
-/* The straight line through points that fits best at a place. */
+/* The weighted least-squares line at a place. */
 struct line {
 	double level, slope;
 };
@@ -41,7 +41,7 @@ struct line {
 static struct line line_of(const struct line_sums *s)
 {
 	const double spread = s->one * s->uu - s->u * s->u;
-	// all points at one place have a mean alone
+	// points at one place define a mean but no slope
 	const bool flat = !(spread > 1e-9 * s->one * s->one);
 	const double slope = flat ? 0.0 : (s->one * s->uy - s->u * s->y) / spread;
 	return (struct line){(s->y - slope * s->u) / s->one, slope};
@@ -78,7 +78,7 @@ static void points_fill(struct points *points, const struct pound_conditional *g
 /* ---- the bandwidth ---- */
 
 struct bins {
-	struct line_sums fold[FOLDS + 1][BINS]; /* u from the middle of the bin; the last is that of all folds */
+	struct line_sums fold[FOLDS + 1][BINS]; /* u from the middle of the bin; the last one is the sum */
 };
 
 static void bins_fill(struct bins *bins, const struct points *points)
@@ -100,7 +100,7 @@ static void bins_fill(struct bins *bins, const struct points *points)
 	}
 }
 
-/* Adds sums of which u counts from a place that lies `shift` ahead. */
+/* Adds sums whose u is relative to a place at `shift`. */
 static void sums_add(struct line_sums *into, const struct line_sums *s, double weight, double shift)
 {
 	into->one += weight * s->one;
@@ -110,7 +110,7 @@ static void sums_add(struct line_sums *into, const struct line_sums *s, double w
 	into->uy += weight * (s->uy + shift * s->y);
 }
 
-/* Squared error of predicting every fold from the others, but for a constant; infinite where there is nothing to predict
+/* Squared error of predicting every fold from the others, up to a constant; infinite if a bin has no neighbors to predict
  * from. */
 static double prediction_error(const struct bins *bins, double bandwidth)
 {
@@ -131,7 +131,7 @@ static double prediction_error(const struct bins *bins, double bandwidth)
 				continue;
 			if (!(near[f].one < 0.0))
 				return INFINITY;
-			// both sums have changed their sign, which the line does not feel
+			// all sums have the opposite sign, which does not change the line
 			const struct line line = line_of(&near[f]);
 			error += line.level * line.level * in->one + 2.0 * line.level * line.slope * in->u +
 			         line.slope * line.slope * in->uu - 2.0 * (line.level * in->y + line.slope * in->uy);
@@ -208,7 +208,7 @@ static double level_at(const struct line *line, double u)
 	return line[k].level + t * (line[k + 1].level - line[k].level);
 }
 
-/* What each row adds to the curve at a place: the kernel's weights of its points times their residuals. */
+/* Influence of each row on the curve at a place: regression weights of its points times their residuals. */
 static void influence_fill(const struct points *points, const double *residual, double place,
                            double bandwidth, const struct line_sums *s, double *influence)
 {
@@ -224,7 +224,7 @@ static void influence_fill(const struct points *points, const double *residual, 
 	}
 }
 
-/* Where everything lies in the scratch. */
+/* Layout of the scratch memory. */
 struct mean_work {
 	struct bins *bins;
 	struct points points;
@@ -274,7 +274,7 @@ static void curve_fill(const struct pound_conditional *given, const struct mean_
 	}
 }
 
-/* The means of the rows at each of a discrete input's values. */
+/* The means of the rows at each value of a discrete input. */
 static void levels_fill(const struct pound_conditional *given, int input, const struct mean_work *work,
                         struct pound_curve *curve)
 {
@@ -315,15 +315,15 @@ size_t pound_conditional_scratch(int n_rows)
 	return carve(NULL, NULL, n_rows);
 }
 
-/* The mean output given an input, at POUND_CURVE places.
+/* The conditional mean of the output given an input, at POUND_CURVE places.
  *
- * Given    given     -                     rows of POUND_ROWS_MIN at least
+ * Given    given     -                     POUND_ROWS_MIN rows or more
  *          input     -
- * Returns  curve     -                     at u = (k + 1/2) / POUND_CURVE, with 95 % bands at each place; of a discrete input
- *                                          at each value, exact means, and NAN after the last
+ * Returns  curve     -                     at u = (k + 1/2) / POUND_CURVE, with a pointwise 95 % band; for a discrete input
+ *                                          the means at each value, and NAN after the last
  * Memory   scratch   (pound_conditional_scratch)
  *
- * Valid    Any design.  A kink that the trend does not have is rounded within the bandwidth.
+ * Valid    Any design.  A kink that is not in the trend is rounded within the bandwidth.
  * Test     unit_conditional_mean
  */
 void pound_conditional_mean(const struct pound_conditional *given, int input, double *scratch,

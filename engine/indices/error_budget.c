@@ -1,10 +1,10 @@
-/* error_budget.c - how far S1 and ST of an output may be off: by the integration, by the number of rows, by the number of
- * signals, by failed rows.
+/* error_budget.c - errors of S1 and ST of an output caused by integration, number of rows, number of signals and failed
+ * rows.
  *
- * 1. Integration: some runs were made again on half the sample step, the same signal in other steps.  The difference
- *    counts as an independent error of every run.
+ * 1. Integration: some runs are repeated on half the sample step, with the same signal.  The difference is treated as an
+ *    independent error of every run.
  * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design (index_columns.c).
- * 3. What each does to the worst index, on one scale, and which is larger than the others together. */
+ * 3. The effect of each source on the worst index, and the source whose effect exceeds the sum of the others. */
 #include "engine/indices/error_budget.h"
 #include "engine/numeric/elementary.h"
 
@@ -36,7 +36,7 @@ static void means(const struct pound_sample_values *values, const struct pound_c
 	}
 }
 
-/* Relative difference of two numbers; 0 for equal ones, even zeros. */
+/* Relative difference of two numbers; 0 for equal numbers, even zeros. */
 static double apart(double p, double q)
 {
 	return p == q ? 0 : fabs(p - q) / fmax(fabs(p), fabs(q));
@@ -46,12 +46,12 @@ static double apart(double p, double q)
  *
  * Given    values, checks
  * Returns  accuracy   runs_checked, runs_unchecked, difference_median, difference_largest
- *          value      variance of an output (a mean over R signals) that such differences make; NAN: none checked
+ *          value      variance that the differences add to an output (a mean over R signals); NAN: none checked
  * Memory   relative   (checks.n)
  *
  *   e = ((U' - U) - Y (u' - u)) / mean(u)          value = mean(e^2) / R
  *
- * Source   delta method of a ratio of means, as in valid_rows.c; errors of different signals taken as independent
+ * Source   delta method for a ratio of means, as in valid_rows.c; errors of different signals taken as independent
  * Test     unit_error_budget: differences_of_runs_come_out_relative_and_as_a_variance
  */
 static double differences(const struct pound_sample_values *values, struct pound_checks checks,
@@ -79,7 +79,7 @@ static double differences(const struct pound_sample_values *values, struct pound
 	return n ? squares / n / values->n_signals : NAN;
 }
 
-/* Change of the indices when an independent error with the share q of the variance is taken out of all outputs.
+/* Change of the indices when an independent error with the fraction q of the variance is removed from all outputs.
  *
  *   S: q S / (1 - q)          T: q |1 - T| / (1 - q)
  *
@@ -96,15 +96,15 @@ static double total_shift(double q, double total)
 	return q < 1 ? fmin(1, q * fabs(1 - total) / (1 - q)) : 1;
 }
 
-/* Twice the deviation of an index that independent errors with the share q of the variance cause in n rows.
+/* Twice the standard deviation of an index caused by independent errors with the fraction q of the variance in n rows.
  *
  *   S: 2 sqrt(2 q / n) (sqrt(1 + T) + |S|)          T: 4 sqrt(q / n) (sqrt T + T / sqrt(d + 2))
  *
- * T is taken at the end of its interval: the polynomial behind ST moves with the errors even where T is 0.
+ * T is taken at the upper end of its interval: the polynomial behind ST changes with the errors even if T is 0.
  *
  * Source   to first order in the errors: b (c - a) changes by e_b (c - a) + b (e_c - e_a), the variance by 2 mean(a e_a),
  *          half of (c - a)^2 by (c - a) (e_c - e_a); variances of sums of independent terms, deviations of quotients added
- * Valid    Pick-freeze estimates; those of S1 and ST are moved less.
+ * Valid    Pick-freeze estimates; the columns S1 and ST change less.
  * Test     unit_error_budget: indices_move_no_more_than_stated_when_noise_is_added
  */
 static double first_spread(double q, double n, double first, double total_high)
@@ -117,19 +117,19 @@ static double total_spread(double q, double n, int d, double total_high)
 	return 4 * sqrt(q / n) * (sqrt(fmax(total_high, 0)) + fmax(total_high, 0) / sqrt(d + 2.0));
 }
 
-/* Whether ST cannot be estimated, because the samples of a row share noise of unknown covariance. */
+/* Whether ST cannot be estimated because the samples of a row share noise of unknown covariance. */
 static bool noise_shared(const struct pound_indices *indices)
 {
 	return indices->notes & (1u << POUND_NOTE_SHARED_SIGNAL | 1u << POUND_NOTE_SHARED_NOISE);
 }
 
-/* Upper end of the total index that the deviations above need; the raw one is made of the same differences. */
+/* Upper end of the total index for the formulas above; without ST, of the raw total index, from the same differences. */
 static double total_high(const struct pound_indices *indices, int input)
 {
 	return indices->index[noise_shared(indices) ? POUND_ST_RAW : POUND_ST][input].high;
 }
 
-/* What the errors of integration may change of S1 and ST: the shift, and the spread. */
+/* Possible changes of S1 and ST by integration errors: shift plus spread. */
 static void changes(struct pound_indices *indices, const struct pound_sample_values *values)
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
@@ -152,7 +152,7 @@ static double half(struct pound_estimate estimate)
 	return 0.5 * (estimate.high - estimate.low);
 }
 
-/* The half widths of all rows, which are those of the indices, and the numbers of rows that have any. */
+/* Sets the half widths of all rows, from the indices, and the number of rows of each level that has half widths. */
 static void half_widths(const struct pound_indices *indices, int n_rows, int n_inputs,
                         struct pound_accuracy *accuracy)
 {
@@ -170,7 +170,7 @@ static void half_widths(const struct pound_indices *indices, int n_rows, int n_i
 	}
 }
 
-/* Root mean square of all half widths of a level, with those of ST or without. */
+/* Root mean square of all half widths of a level, with or without ST. */
 static double typical(const struct pound_accuracy *accuracy, int n_inputs, int level, bool totals)
 {
 	double squares = 0;
@@ -180,7 +180,7 @@ static double typical(const struct pound_accuracy *accuracy, int n_inputs, int l
 	return sqrt(squares / ((totals ? 2 : 1) * n_inputs));
 }
 
-/* 2^x for x in [0, 64], by bisection of the logarithm that is the same on every machine; exact to rounding. */
+/* 2^x for x in [0, 64], exact to rounding, by bisection of the logarithm, which is the same on every machine. */
 static double two_to(double x)
 {
 	double low = 1, high = 0x1p64, wanted = x * pound_elementary_log(2);
@@ -189,7 +189,7 @@ static double two_to(double x)
 	return high;
 }
 
-/* How half widths fall with the rows: the straight line through their logarithms, and how many rows halve them.
+/* Decrease of the half widths with the rows: slope of the log-log regression line, and the rows that halve them.
  *
  *   rows_to_halve = n 2^(-1/slope)
  *
@@ -197,7 +197,7 @@ static double two_to(double x)
  */
 static void slope(struct pound_accuracy *accuracy, int n_inputs, bool totals)
 {
-	// a flatter line is scatter: halving would take more than 32 times the rows
+	// a flatter line is taken as scatter: halving would take more than 32 times the rows
 	const double flattest = -0.2;
 	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
 	for (int k = 0; k < POUND_LEVELS; k++) {
@@ -214,8 +214,8 @@ static void slope(struct pound_accuracy *accuracy, int n_inputs, bool totals)
 
 /* ---- all together ---- */
 
-/* The error that is larger than all others together.  Noise of few signals is in the intervals: where it may be all of the
- * widest one, nothing of that is left for too few rows.
+/* The error that is larger than the sum of all others.  Intervals include the noise of few signals: if this noise may be the
+ * whole of the widest interval, the sampling error does not count.
  *
  * Test     unit_error_budget: the_dominant_error_is_larger_than_the_others_together
  */
@@ -231,7 +231,7 @@ enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
 	return POUND_ERROR_NONE;
 }
 
-/* What the noise of few signals adds to an interval: an upper estimate, but no more than the interval, which holds it.
+/* Contribution of the noise of few signals to an interval: an upper estimate, limited to the interval, which includes it.
  *
  * Test     unit_error_budget: noise_adds_no_more_to_an_interval_than_there_is
  */
@@ -240,8 +240,8 @@ static double noise_part(double spread, double half)
 	return fmin(1, fmin(spread, half));
 }
 
-/* What the noise of few signals adds to the intervals, at most; it is not in the values, from which it was taken away.
- * An upper estimate where samples share their signals.  NAN: the noise is not known. */
+/* Largest contribution of the noise of few signals to the intervals; the values are corrected for the noise.
+ * An upper estimate if samples share their signals.  NAN: the noise is not known. */
 static double excitation(const struct pound_indices *indices, int n_rows, int n_inputs)
 {
 	const double w = indices->noise_share, q = w < 1 ? w / (1 - w) : INFINITY;
@@ -256,7 +256,7 @@ static double excitation(const struct pound_indices *indices, int n_rows, int n_
 	return worst;
 }
 
-/* What each error does to the worst index; NAN where no index knows. */
+/* Effect of each error on the worst index; NAN if unknown for all indices. */
 static void errors_fill(const struct pound_indices *indices, const struct pound_sample_values *values,
                         double errors[POUND_ERROR_NONE])
 {
@@ -276,17 +276,17 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
 	errors[POUND_ERROR_FAILED_ROWS] = dropped;
 }
 
-/* How far the indices of an output may be off, and for want of what.
+/* Error of the indices of an output, by source.
  *
  * Given    values        the output's runs
- *          checks        those that were made again
+ *          checks        the repeated runs
  *          indices       of values, by pound_index_columns_indices
  * Returns  indices       accuracy
  * Memory   scratch       (checks.n)
  *
- * Valid    Pounding is chaotic: after many contacts rounding alone parts two runs of one scene, and neither is the
- *          better one.  Large differences of single runs then say that the scene does not determine the run; what it
- *          does to the indices stays small as long as such runs are few or alike in the mean.
+ * Valid    Pounding is chaotic: after many contacts rounding alone separates two runs of one scene, and neither is more
+ *          accurate.  Large differences of single runs then mean that the scene does not determine the run; their effect
+ *          on the indices stays small as long as such runs are few or agree on average.
  * Test     unit_error_budget
  */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
@@ -294,7 +294,7 @@ void pound_accuracy_estimate(const struct pound_sample_values *values, struct po
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	double variance = differences(values, checks, scratch, accuracy);
-	// an output that does not vary has no indices to be off
+	// a constant output has no indices
 	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
 	changes(indices, values);
 	half_widths(indices, values->n_rows, values->n_inputs, accuracy);

@@ -1,7 +1,7 @@
-/* failed_rows.c - what rows that were left out, for a failed run, may have done to the indices.
+/* failed_rows.c - bound on the effect of failed rows on the indices.
  *
- * Nothing is known of such a row but that it failed, and rows may fail for what makes their outputs large.  So the worst is
- * taken: that every one of them is like the row among the others that moves the index most. */
+ * The outputs of a failed row are unknown, and runs may fail for the same reason that outputs are large.  The worst case is
+ * assumed: every failed row equals the valid row that changes the index most. */
 #include "engine/indices/indices.h"
 
 #include <math.h>
@@ -14,17 +14,17 @@ static void row_moments(const struct pound_rows *rows, int row, double *m)
 	pound_estimator_row(0)->moments(&outputs, m);
 }
 
-/* Largest changes of the indices that rows left out can have made.
+/* Largest changes of the indices that failed rows can cause.
  *
- * Given    rows       n         those that are left
- *          dropped    m         how many were left out
- * Returns  accuracy   -         first_dropped, total_dropped; 0 when none was, NAN when none is left
+ * Given    rows       n         valid rows
+ *          dropped    m         number of failed rows
+ * Returns  accuracy   -         first_dropped, total_dropped; 0 if no row failed, NAN if all failed
  *
  *   max over rows r of |index((n M + m M_r) / (n + m)) - index(M)|
  *
  * with M_r the moments of row r, M their means, and the index as the plain protocol estimates it.
  *
- * Valid    A bound if no row that is left out goes beyond the others in what it adds to the moments
+ * Valid    A bound if no failed row contributes more to the moments than the valid rows do
  * Test     unit_failed_rows
  */
 void pound_failed_rows_changes(const struct pound_rows *rows, int dropped, struct pound_accuracy *accuracy)

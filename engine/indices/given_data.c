@@ -1,12 +1,12 @@
-/* given_data.c - sensitivity indices from samples that were drawn elsewhere.
+/* given_data.c - sensitivity indices from given data.
  *
- * 1. An input is placed by its rank among the samples, so that its distribution is uniform, whatever it is.  One of few
- *    values, each of which comes often, is discrete.
- * 2. The samples are checked: inputs must be independent of each other (ranks correlated, or cells of a table of two inputs
- *    filled unevenly), and near in one input must be near by chance alone in the others.
- * 3. S1 is that of local_regression.c or of the polynomial (given_polynomial.c), whichever has the narrower interval; ST and S2
- *    are those of the polynomial, or more by what it does not explain, which the interval holds.
- * 4. Conditional means are the polynomial's and the mean of what it leaves (conditional_mean.c). */
+ * 1. An input is replaced by its rank among the samples, which is uniform whatever the distribution.  An input with few
+ *    values, each of which occurs often, is discrete.
+ * 2. The samples are checked: inputs must be independent of each other (rank correlation, and chi-square of the table of
+ *    two inputs), and samples near in one input may be near in the others by chance only.
+ * 3. S1 is from local_regression.c or from the polynomial (given_polynomial.c), whichever has the narrower interval; ST and
+ *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.
+ * 4. Conditional means are the polynomial's plus its residual's (conditional_mean.c). */
 #include "engine/given.h"
 
 #include <assert.h>
@@ -20,19 +20,19 @@
 
 enum {
 	ROWS_PER_VALUE = 5, // of an input with few values, on average
-	CELLS_MAX = 8,      // a side, of the table of two inputs
+	CELLS_MAX = 8,      // per side, of the table of two inputs
 	ROWS_PER_CELL = 10, // on average
-	LAGS = 10,          // neighbors that are looked at
-	PLACES = 2, // u of a sample comes twice: local_regression.c and conditional_mean.c expect two matrices
+	LAGS = 10,          // neighbors checked
+	PLACES = 2, // u of a sample is stored twice: local_regression.c and conditional_mean.c read A and B
 };
 
-// standard errors by which a check fails: of some hundreds and some thousands of normal deviates one in a hundred sets would
+// limits of the checks in standard errors: with hundreds (thousands) of normal deviates, 1 % of sample sets fail by chance
 static const double DEPENDENT = 4.0, ARRANGED = 5.0;
-static const double EXPLAINED_LEAST = 0.9; // of the variance, for ST to be estimated
+static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
 
 /* ---- the distributions ---- */
 
-/* Row of the distributions of few values. */
+/* Row of the discrete distribution. */
 static int discrete_row(void)
 {
 	int row = 0;
@@ -41,10 +41,10 @@ static int discrete_row(void)
 	return row;
 }
 
-/* Distributions of the samples themselves: each value with its share.
+/* Empirical distributions: each value with its frequency.
  *
  * Given    given      n_rows, n_inputs, x, inputs with names
- * Returns  inputs     distribution, which points into values
+ * Returns  inputs     distributions, which point into values
  * Memory   values     (2 x n_inputs x n_rows)
  *          order      (n_rows)
  *
@@ -65,7 +65,7 @@ void pound_given_inputs(struct pound_given *given, double *values, size_t *order
 			}
 			weight[distinct - 1]++;
 		}
-		// few values that hardly come twice are those of a continuous input: all n, so that none has a level of its own
+		// few samples with few repeated values: a continuous input; all n values are listed, so that it has no levels
 		if (distinct <= POUND_CURVE && n < ROWS_PER_VALUE * distinct)
 			for (distinct = 0; distinct < n; distinct++) {
 				value[distinct] = given->x[order[distinct] * (size_t)d + j];
@@ -100,7 +100,7 @@ static size_t carve(struct space *s, double *scratch, int n_rows, int n_inputs)
 		s->order = (size_t *)(s->row + n);
 		s->rest = scratch + n * PLACES * n_inputs + 4 * n;
 	}
-	// what is fitted stays while the others work behind it
+	// the fit is kept at the start, the other steps use the memory behind it
 	return n * PLACES * n_inputs + 4 * n + polynomial + (sizes[0] > sizes[1] ? sizes[0] : sizes[1]);
 }
 
@@ -109,7 +109,7 @@ size_t pound_given_scratch(int n_rows, int n_inputs)
 	return carve(NULL, NULL, n_rows, n_inputs);
 }
 
-/* Probabilities of the samples: ranks in (0, 1), equal values in the middle of theirs. */
+/* Probabilities of the samples: ranks in (0, 1), mid-ranks for ties. */
 static void places_fill(const struct pound_given *given, const struct space *s)
 {
 	const int n = given->n_rows, d = given->n_inputs;
@@ -146,12 +146,12 @@ static double correlation(const struct space *s, int n, int d, int i, int j)
 	return ij / sqrt(ii * jj);
 }
 
-/* How unevenly the table of two inputs' ranks is filled.
+/* Whether the table of two inputs' ranks is filled unevenly.
  *
- * Returns  value       standard normal deviate of Pearson's chi-square
+ * Returns  value       Pearson's chi-square exceeds DEPENDENT standard normal deviates
  *
  * Source   Wilson and Hilferty 1931, Proc. Natl. Acad. Sci. 17, 684: (chi2 / f)^(1/3) is normal with mean 1 - 2/(9 f) and
- *          variance 2/(9 f); here its cube is looked at
+ *          variance 2/(9 f); here chi2 / f is compared with the cube of the limit
  */
 static bool uneven(const struct space *s, int n, int d, int i, int j)
 {
@@ -183,7 +183,7 @@ static bool uneven(const struct space *s, int n, int d, int i, int j)
 	return chi / freedom > root * root * root;
 }
 
-/* Sum of the products of ranks of an input, of samples at a lag in the order. */
+/* Sum of the products of an input's ranks at samples `lag` apart in the order. */
 static double lagged(const struct space *s, int n, int d, int j, int lag)
 {
 	double sum = 0.0;
@@ -192,8 +192,8 @@ static double lagged(const struct space *s, int n, int d, int j, int lag)
 	return sum;
 }
 
-/* Whether samples that are neighbors in one input are alike, or unlike, in another one.  Ranks of random samples have no
- * correlation at any lag; if the inputs depend on each other, nearly the same one at all small lags. */
+/* Whether neighbors in one input (the order) are correlated in input j.  Ranks of random samples have no correlation at any
+ * lag; with dependent inputs the correlation is nearly the same at all small lags. */
 static bool arranged(const struct space *s, int n, int d, int j)
 {
 	const double limit = ARRANGED * sqrt((1.0 + 1.0 / LAGS) / n);
@@ -212,7 +212,7 @@ static bool arranged_by_any(const struct pound_given *given, const struct space 
 {
 	const int n = given->n_rows, d = given->n_inputs;
 	for (int i = 0; i < d; i++) {
-		// means over the values of a discrete input need no neighbors
+		// a discrete input uses means at its values, not neighbors
 		if (pound_conditional_levels(&given->inputs[i].distribution) > 0)
 			continue;
 		gsl_sort_index(s->order, given->x + i, (size_t)d, (size_t)n);
@@ -223,7 +223,7 @@ static bool arranged_by_any(const struct pound_given *given, const struct space 
 	return false;
 }
 
-/* Whether lines resemble those before them. */
+/* Whether successive samples are correlated. */
 static bool serial(const struct space *s, int n, int d)
 {
 	for (int k = 0; k < n; k++)
@@ -240,13 +240,13 @@ static bool serial(const struct space *s, int n, int d)
 	return false;
 }
 
-/* What the samples are.
+/* Checks the samples.
  *
- * Given    given      -                      all of it
+ * Given    given      -                      all members
  * Returns  checks     -
  *          scratch    (pound_given_scratch)  for pound_given_estimate
  *
- * Pairs of inputs are looked at; three that depend on each other only together are not found.
+ * Only pairs of inputs are checked; a dependence among three inputs that are pairwise independent is not found.
  *
  * Test     unit_given_data: independent_samples_pass_and_others_are_named
  */
@@ -262,7 +262,7 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 		for (int j = i + 1; j < d; j++) {
 			const double r = correlation(&s, n, d, i, j);
 			const bool independent = fabs(r) * sqrt(n - 1.0) <= DEPENDENT && !uneven(&s, n, d, i, j);
-			// the first pair that depends, and of others the most correlated one
+			// the first dependent pair, or without one the most correlated pair
 			if (checks->pair[0] < 0 ||
 			    (!dependent && (!independent || fabs(r) > fabs(checks->correlation)))) {
 				checks->pair[0] = i, checks->pair[1] = j;
@@ -284,7 +284,7 @@ static double width(struct pound_estimate e)
 	return e.high - e.low;
 }
 
-/* An index of the fit as one of the output, which is more by a part of what the fit does not explain. */
+/* From an index of the fit to the index of the output, which is larger by at most the unexplained fraction. */
 static struct pound_estimate widened(struct pound_estimate e, double explained)
 {
 	e.high += fmax(0.0, 1.0 - explained);
@@ -305,7 +305,7 @@ static void rows_init(struct pound_rows *rows, const struct pound_given *given, 
 	                            .inputs = given->inputs};
 }
 
-/* The outputs less their mean; the first goes first, so that equal ones become zeros. */
+/* The outputs less their mean, summed relative to the first output, so that equal outputs become zeros. */
 static bool centre(const struct pound_given *given, const double *y, const struct space *s,
                    struct pound_given_indices *indices)
 {
@@ -330,7 +330,7 @@ static bool centre(const struct pound_given *given, const double *y, const struc
 	return squares / n > rounding * rounding;
 }
 
-/* S1 by neighbors, or by the polynomial where that is known better. */
+/* S1 by local regression, or by the polynomial if its interval is narrower. */
 static void first_fill(const struct pound_rows *rows, const struct space *s, const struct pound_polynomial *p,
                        bool neighbors, struct pound_given_indices *indices)
 {
@@ -338,7 +338,7 @@ static void first_fill(const struct pound_rows *rows, const struct space *s, con
 	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
 	pound_local_regression_first(rows, s->u, POUND_NOISE_KEPT, s->rest, local);
 	for (int j = 0; j < rows->n_inputs; j++) {
-		// means over the values of a discrete input need no neighbors
+		// a discrete input uses means at its values, not neighbors
 		const bool known = neighbors || pound_rows_levels(rows, j) > 0;
 		const struct pound_estimate fitted = fits ? widened(p->value[j], indices->explained) : UNKNOWN;
 		indices->first[j] = known && !(width(fitted) < width(local[j])) ? local[j] : fitted;
@@ -346,7 +346,7 @@ static void first_fill(const struct pound_rows *rows, const struct space *s, con
 	}
 }
 
-/* ST and S2 by the polynomial; nothing where it explains too little. */
+/* ST and S2 by the polynomial; undefined if its R2 is too small. */
 static void others_fill(const struct pound_given *given, const struct pound_polynomial *p,
                         struct pound_given_indices *indices)
 {
@@ -362,7 +362,7 @@ static void others_fill(const struct pound_given *given, const struct pound_poly
 	indices->notes |= p && !fits ? 1u << POUND_GIVEN_UNEXPLAINED : 0u;
 }
 
-/* Conditional means: those of the polynomial, and of what it leaves. */
+/* Conditional means: of the polynomial plus of its residual. */
 static void curves_fill(const struct pound_rows *rows, const struct space *s,
                         const struct pound_polynomial *p, struct pound_given_indices *indices)
 {
@@ -384,15 +384,15 @@ static void curves_fill(const struct pound_rows *rows, const struct space *s,
 	}
 }
 
-/* The indices of an output that samples allow.
+/* The indices of an output that the samples can estimate.
  *
  * Given    given      -
- *          checks     -                      of it
+ *          checks     -                      of given
  *          y          (n_rows)
  *          scratch    (pound_given_scratch)  as pound_given_check left it
- * Returns  indices    -                      NAN, with a note, for what they do not allow
+ * Returns  indices    -                      NAN, with a note, for indices that cannot be estimated
  *
- * Valid    Independent draws, or one Latin hypercube, of independent inputs; of dependent ones S1 and conditional means alone
+ * Valid    Independent draws, or one Latin hypercube, of independent inputs; dependent inputs: only S1 and conditional means
  * Test     unit_given_data
  */
 void pound_given_estimate(const struct pound_given *given, const struct pound_given_checks *checks,

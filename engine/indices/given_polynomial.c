@@ -1,14 +1,14 @@
-/* given_polynomial.c - a polynomial of samples that were drawn elsewhere, its degree chosen by cross-validation, and the shares of
- * the variance that its terms have.
+/* given_polynomial.c - a polynomial fitted to given data, its degree chosen by cross-validation, and the variance fractions of
+ * its terms.
  *
- * 1. Of each input, polynomials that are orthonormal over its samples (Stieltjes' recurrence); a term is a product of them.
- *    Terms are in order of their degree, so that a lower degree is the head of a higher one, and so are its normal equations
- *    and their factor.
- * 2. The samples fall into folds; each is predicted by fits to the others, of every degree.  The degree that predicts best
- *    is taken; what it explains of samples that it has not seen is the cross-validated R2.
- * 3. Of independent inputs the squared coefficients add up to the variance, each a part of the indices of the term's inputs;
- *    a square is too large by the coefficient's own variance, which is taken off.
- * 4. Intervals are Student's, from the fits without a fold each. */
+ * 1. For each input, polynomials that are orthonormal over its samples (Stieltjes' recurrence); a term is a product of
+ *    these.  Terms are sorted by degree, so that the terms, normal equations and factor of a lower degree are the leading
+ *    part of those of a higher degree.
+ * 2. The samples are dealt to folds; each fold is predicted by fits to the others, of every degree.  The degree that
+ *    predicts best is chosen; its R2 of the predictions is the cross-validated R2.
+ * 3. For independent inputs the squared coefficients add up to the variance and contribute to the indices of the term's
+ *    inputs; a square is too large by the coefficient's own variance, which is subtracted.
+ * 4. Intervals are Student's, from the fits without one fold each. */
 #include "engine/indices/given_polynomial.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ enum {
 	FOLDS = 20,
 	DEGREE_MAX = POUND_POLYNOMIAL_DEGREE_MAX,
 	TERMS_MAX = POUND_POLYNOMIAL_TERMS_MAX,
-	ROWS_PER_TERM = 2, // with fewer no degree predicts well, and cross-validation would say so
+	ROWS_PER_TERM = 2, // with fewer no degree predicts well, as cross-validation would show
 	VALUES_MAX = POUND_POLYNOMIAL_VALUES_MAX,
 };
 
@@ -32,7 +32,7 @@ static double place(const struct pound_polynomial *p, int row, int input)
 	return p->u[(size_t)row * 2 * p->n_inputs + input];
 }
 
-/* Values of the polynomials of an input: one for each degree  (axis->most + 1) */
+/* Values of an input's polynomials, one per degree  (axis->most + 1) */
 static void axis_values(const struct pound_polynomial_axis *axis, double u, double *value)
 {
 	const double x = u - 0.5;
@@ -42,7 +42,7 @@ static void axis_values(const struct pound_polynomial_axis *axis, double u, doub
 		    ((x - axis->a[k]) * value[k] - (k > 0 ? axis->h[k] * value[k - 1] : 0.0)) / axis->h[k + 1];
 }
 
-/* Stieltjes' recurrence, of as many degrees as the samples have values for.
+/* Stieltjes' recurrence, up to the degree that the number of distinct values allows.
  *
  * Source   Gautschi 2004, Orthogonal Polynomials, 2.2.3
  * Test     unit_given_data: an_input_of_few_values_is_discrete
@@ -64,7 +64,7 @@ static void axis_fill(struct pound_polynomial *p, int input)
 			square += next * next / p->n_rows;
 			size += moved * moved / p->n_rows;
 		}
-		// of uniform places the quotient is near 1; of one value less than there are degrees it is rounding
+		// near 1 for uniform samples; rounding error if the degree reaches the number of distinct values
 		if (!(square > 1e-12 * size))
 			return;
 		axis->a[k] = a;
@@ -73,7 +73,7 @@ static void axis_fill(struct pound_polynomial *p, int input)
 	}
 }
 
-/* Adds the terms of a degree with exponents from an input on; false: there is no room for all. */
+/* Adds the terms of a degree, recursively over the exponents from `input` on; false: more than `most` terms. */
 static bool terms_add(struct pound_polynomial *p, unsigned char *exponent, int input, int left, int *n,
                       int most)
 {
@@ -124,14 +124,14 @@ static void terms_values(const struct pound_polynomial *p, int row, double *term
 
 /* ---- the fits ---- */
 
-/* Where everything lies in the scratch; sums are those of each fold and then of all. */
+/* Layout of the scratch memory; sums: of each fold, then of all samples. */
 struct space {
 	double *gram;    /* upper triangles  ((FOLDS + 1) x terms x terms) */
-	double *product; /* of term and output  ((FOLDS + 1) x terms) */
+	double *product; /* sums of term times output  ((FOLDS + 1) x terms) */
 	double *factor;  /* (terms x terms) */
 	double *
-	    coefficients; /* of each fold's fit to the others, and the fit to all, of each degree  ((FOLDS + 1) x (degree + 1) x terms) */
-	double *fit;      /* (n_rows) */
+	    coefficients; /* of the fits without a fold each, then of all, for each degree  ((FOLDS + 1) x (degree + 1) x terms) */
+	double *fit;                              /* (n_rows) */
 	double sum[FOLDS + 1], square[FOLDS + 1]; /* of the outputs */
 	int n[FOLDS + 1];
 };
@@ -149,7 +149,7 @@ static size_t carve(struct space *s, double *scratch, int n_rows, int terms)
 	return (FOLDS + 2) * n * n + (FOLDS + 1) * (DEGREE_MAX + 2) * n + (size_t)n_rows;
 }
 
-/* Terms of a polynomial of n_rows samples, at most. */
+/* Upper bound of the number of terms with n_rows samples. */
 static int terms_most(int n_rows)
 {
 	return n_rows / ROWS_PER_TERM < TERMS_MAX ? n_rows / ROWS_PER_TERM : TERMS_MAX;
@@ -200,7 +200,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 	}
 }
 
-/* Factor of the normal equations without a fold (FOLDS: of all samples). */
+/* Factor of the normal equations without a fold (FOLDS: with all samples). */
 static void factor_fill(const struct pound_polynomial *p, const struct space *s, int fold)
 {
 	const size_t n = p->terms_of[p->degree];
@@ -210,7 +210,7 @@ static void factor_fill(const struct pound_polynomial *p, const struct space *s,
 	pound_legendre_factor(s->factor, (int)n);
 }
 
-/* Solves with the head of a factor: forward alone, or back from there. */
+/* Forward and back substitution with the leading n x n part of a factor. */
 static void solve_forward(const double *factor, int stride, int n, double *b)
 {
 	for (int i = 0; i < n; i++) {
@@ -231,7 +231,7 @@ static void solve_back(const double *factor, int stride, int n, double *b)
 	}
 }
 
-/* Coefficients of every degree of the fit without a fold. */
+/* Coefficients of the fits of every degree without a fold. */
 static void coefficients_fill(const struct pound_polynomial *p, const struct space *s, int fold)
 {
 	const int n = p->terms_of[p->degree];
@@ -248,7 +248,7 @@ static void coefficients_fill(const struct pound_polynomial *p, const struct spa
 	}
 }
 
-/* Squared errors of the predictions by each degree. */
+/* Sum of squared out-of-fold prediction errors for each degree. */
 static void errors_fill(const struct pound_polynomial *p, const double *y, const struct space *s,
                         double *error)
 {
@@ -344,18 +344,18 @@ static void values_fill(struct pound_polynomial *p, const struct space *s, doubl
 
 /* ---- all together ---- */
 
-/* Fits the polynomial that predicts best, and finds the shares of its terms.
+/* Fits the polynomial that predicts best, and computes its indices.
  *
  * Given    p           n_rows, n_inputs, u           u in (0, 1)
  *          y           (n_rows)                      less their mean
- * Returns  p           all else
+ * Returns  p           all other members
  * Memory   scratch     (pound_polynomial_scratch)    held by p
  *
- * Of independent inputs an index of the output is that of the fit, or more by a part of what the fit does not explain:
+ * For independent inputs an index of the output is at least the fit's index, and larger by at most the unexplained fraction:
  *
  *   y = g + h, h orthogonal to all terms;   T_j(y) = T_j(g) + T_j(h),   0 <= T_j(h) <= 1 - R2,   and so for S_j and S_jk
  *
- * Valid    Independent inputs, for the indices; any, for the predictions
+ * Valid    Independent inputs for the indices; any inputs for the predictions
  * Source   Sudret 2008, Reliab. Eng. Syst. Saf. 93, 964-979, for the indices of a polynomial
  * Test     unit_given_data
  */

@@ -1,48 +1,48 @@
-/* index_columns.c - every column of indices of one output from the same runs: what each is made by, what it takes, and which
- * column stands in where that is missing.
+/* index_columns.c - all index columns of one output from the same runs: the estimator of each column, its preconditions, and the
+ * substitute column if they are not met.
  *
- * 1. Raw and corrected pick-freeze indices and the excitation's shares come from one bootstrap (noise_correction.c).
- * 2. The sharper first-order indices are those of chaos_expansion.c or local_regression.c, the sharper totals those of chaos_expansion.c or pick-freeze,
- *    of each input the one with the narrower interval: polynomials are best for smooth outputs, the others elsewhere.
- *    Local regression has a bias where the output changes within its reach; it is refused where it disagrees with the
- *    polynomial, whose estimate has none.
- *    Where few rows hold most of the variance, and few are behind an index, it is that of chaos_expansion.c, whose denominator
- *    has the same large outputs as its numerator: the narrower of several intervals is too narrow there.
- * 3. Interactions and conditional means are those of chaos_expansion.c.
- * 4. A column that cannot be made is a copy of the next best, and a note says so.  Nothing is clipped.
- * 5. Samples of a row that share their noise are alike in it.  Where the covariance of that noise is unknown, products and
- *    differences of samples give what an input explains given the noise, which is none of the indices; raw ones are what
- *    their protocol gives, and neighbors, which are of different rows, still give S1.  The other columns are undefined. */
+ * 1. Raw and corrected pick-freeze indices and the excitation's indices come from one bootstrap (noise_correction.c).
+ * 2. S1 is from chaos_expansion.c or local_regression.c, ST from chaos_expansion.c or pick-freeze, for each input the one
+ *    with the narrower interval: polynomials are best for smooth outputs, the others for all other outputs.
+ *    Local regression is biased if the output changes within its reach; it is rejected if it disagrees with the
+ *    polynomial's estimate, which is unbiased.
+ *    If few rows hold most of the variance, and an index has few effective rows, chaos_expansion.c is taken, whose
+ *    denominator has the same large outputs as its numerator: the narrowest of several intervals would be too narrow.
+ * 3. Interactions and conditional means are from chaos_expansion.c.
+ * 4. A column that cannot be estimated is a copy of the next best, and a note reports it.  Nothing is clipped.
+ * 5. If the samples of a row share noise of unknown covariance, products and differences of samples give indices conditional
+ *    on the noise, which no column reports.  Raw indices remain, as defined by their protocol, and so does S1 by local
+ *    regression, because neighbors are from different rows.  The other columns are undefined. */
 #include "engine/indices/indices.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-/* Half widths that the first rows of the design give alone. */
+/* Half widths from the first rows of the design alone. */
 struct level {
-	int kept; /* rows of them that count */
+	int kept; /* valid rows among them */
 	struct {
 		double first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
-	} closed, pick_freeze; /* with the polynomials of all rows, and by few resamples */
+	} closed, pick_freeze; /* with the polynomials of all rows; with few resamples */
 };
 
 enum {
 	RESAMPLES_FEW = 400, /* half widths to 5 % */
-	ROWS_BEHIND = 5,     /* an interval at least, or it holds too seldom: make statistics */
+	ROWS_BEHIND = 5,     /* least effective rows of a valid interval: make statistics */
 };
 
-/* What the columns are made from. */
+/* The data that the columns are estimated from. */
 struct sources {
 	const struct pound_rows *rows;
 	const struct pound_sampling *sampling;
 	struct pound_pick_freeze pick_freeze;
-	struct pound_closed_results closed; /* of chaos_expansion.c, given rows enough */
+	struct pound_closed_results closed; /* of chaos_expansion.c, if there are enough rows */
 	bool corrected;                     /* the covariances of a row's noise are known */
 	bool variance_known;                /* at least the variances are */
 	bool shared;                        /* samples of a row share noise of unknown covariance */
 	double *scratch;
-	double *behind; /* the fewest rows behind an interval that is used, pound_jackknife_rows */
+	double *behind; /* fewest effective rows of the intervals used, pound_jackknife_rows */
 	struct level level[POUND_LEVELS];
 	struct pound_accuracy *accuracy;
 };
@@ -108,8 +108,8 @@ static enum pound_noise noise_of(const struct sources *s)
 	return s->corrected ? POUND_NOISE_REMOVED : POUND_NOISE_KEPT;
 }
 
-/* The half widths that the first n/8, n/4 and n/2 rows give by chaos_expansion.c, as it has left its scratch, and by pick-freeze;
- * those of all rows are the indices' own. */
+/* Half widths from the first n/8, n/4 and n/2 rows by chaos_expansion.c, with its scratch as left, and by pick-freeze; the half
+ * widths of all rows are those of the indices. */
 static void levels_fill(struct sources *s, uint64_t seed)
 {
 	const int d = s->rows->n_inputs;
@@ -140,9 +140,9 @@ static void levels_fill(struct sources *s, uint64_t seed)
 	}
 }
 
-/* Of two estimates of every input the one with the narrower interval.  Widths from a few groups of rows scatter by a
- * quarter: the narrower of two would be too narrow, so the second has to be narrower by more than that.  The first is the
- * one without a polynomial, so that on nets no index is worse than plain where polynomials cannot follow. */
+/* For every input the estimate with the narrower interval.  Widths from a few groups of rows scatter by 25 %, so that the
+ * narrower of two would be too narrow: q must be narrower by a factor of 1.5.  p is the estimate without a polynomial, so that
+ * with Sobol' sequences no index is worse than pick-freeze if polynomials do not fit. */
 static void narrower(const struct sources *s, const struct pound_estimate *p, const struct pound_estimate *q,
                      struct pound_estimate *into)
 {
@@ -156,7 +156,7 @@ static bool same(struct pound_estimate p, struct pound_estimate q)
 	return p.value == q.value && p.high == q.high;
 }
 
-/* Takes estimates that may have a bias from those without one where they are further apart than both may err. */
+/* Replaces possibly biased estimates by unbiased ones if their difference exceeds the combined half widths. */
 static void refuse(const struct sources *s, const struct pound_estimate *unbiased,
                    struct pound_estimate *biased)
 {
@@ -173,7 +173,7 @@ static void undefined(struct pound_estimate *estimates, int n)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 }
 
-/* Rows that the variance is made of: (sum v)^2 / sum v^2, v the squares of each. */
+/* Effective number of rows in the variance: (sum v)^2 / sum v^2, v the sum of squares of a row. */
 static double rows_of_variance(const struct pound_rows *rows)
 {
 	double sum = 0.0, squares = 0.0;
@@ -188,13 +188,13 @@ static double rows_of_variance(const struct pound_rows *rows)
 	return sum * sum / squares;
 }
 
-/* Whether the squares of outputs are those of less than a quarter of the rows; of a normal law they are those of more. */
+/* Whether the variance has fewer effective rows than a quarter of the rows; normal outputs have more. */
 static bool few_hold_most(const struct pound_rows *rows)
 {
 	return rows_of_variance(rows) < 0.25 * rows->n_rows;
 }
 
-/* Notes how many rows are behind an interval that is used, unless it is so narrow that it hardly matters. */
+/* Updates the fewest effective rows with those of a used interval, unless the interval is too narrow to matter. */
 static void behind_take(const struct sources *s, struct pound_estimate estimate, double rows)
 {
 	const double narrow = 0.005;
@@ -206,7 +206,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const int d = s->rows->n_inputs;
 	struct pound_estimate local[POUND_INPUTS_MAX];
-	// neighbours in one input say nothing where they are arranged in the others
+	// neighbors in one input cannot be used if they are arranged in the others
 	const bool neighbours = !s->sampling->quasi_random;
 	if (s->shared && !neighbours) {
 		undefined(into, d);
@@ -231,7 +231,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 	if (neighbours)
 		pound_local_regression_behind(s->rows, s->scratch, behind);
 	for (int j = 0; j < d && !s->shared; j++) {
-		// of few rows neighbors say little: the mean of ten of them is not yet the conditional one
+		// with few effective rows the mean of ten neighbors is not yet the conditional mean
 		if (heavy && s->closed.first_rows[j] < ROWS_BEHIND)
 			into[j] = s->closed.first[j];
 		behind_take(s, into[j],
@@ -257,9 +257,9 @@ static double beyond(double share)
 	return fmax(0.0, fmax(-share, share - 1.0));
 }
 
-/* The first of two estimates made by few rows, unless it is beyond [0, 1] by more than sampling errors of its kind are, and the other
- * by less: then the other's value, and the intervals of both, as neither is wide enough.  One large output that the polynomial
- * misses makes a total far below 0 or above 1. */
+/* Of two estimates from few effective rows p, unless p is outside [0, 1] by more than typical sampling errors and q by less: then
+ * the value of q with the union of both intervals, as neither is wide enough.  One large output that the polynomial misses
+ * gives a total far below 0 or above 1. */
 static struct pound_estimate nearer_a_share(struct pound_estimate p, struct pound_estimate q)
 {
 	const double most = 0.05;
@@ -268,8 +268,8 @@ static struct pound_estimate nearer_a_share(struct pound_estimate p, struct poun
 	return (struct pound_estimate){q.value, fmin(p.low, q.low), fmax(p.high, q.high)};
 }
 
-/* Totals by the polynomial or by pick-freeze; where few rows decide, which make plain intervals too narrow by chance, by the
- * former if it is a share. */
+/* Totals by the polynomial or by pick-freeze.  If few rows decide, pick-freeze intervals may be too narrow by chance: then by
+ * the polynomial, if its value is near [0, 1]. */
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
@@ -296,14 +296,14 @@ static void shapley(const struct sources *s, struct pound_estimate *into)
 	copy(s, s->closed.shapley, into);
 }
 
-// in the order in which they are made: a substitute comes before the column that it replaces
+// in the order of computation: a substitute comes before the column that it replaces
 // clang-format off
 static const struct index_column {
 	enum pound_index index;
 	bool (*possible)(const struct sources *s);
 	void (*make)(const struct sources *s, struct pound_estimate *into);
 	enum pound_index instead; /* the substitute column, POUND_N_INDICES: none, undefined */
-	bool shared; /* is what its name says even if the samples of a row share noise of unknown covariance */
+	bool shared; /* valid even if the samples of a row share noise of unknown covariance */
 } columns[] = {
 	{POUND_S1_RAW,         always,         first_raw,       POUND_N_INDICES,      true},
 	{POUND_ST_RAW,         always,         total_raw,       POUND_N_INDICES,      true},
@@ -318,7 +318,7 @@ static const struct index_column {
 
 static_assert(sizeof columns / sizeof columns[0] == POUND_N_INDICES, "every index has its row");
 
-/* The columns of the estimator that the study names, if it does. */
+/* The columns of the study's named estimator, if any. */
 static void named_fill(const struct sources *s, uint64_t seed, struct pound_indices *indices)
 {
 	const struct pound_estimator *estimator = pound_estimator_row(s->sampling->estimator);
@@ -335,8 +335,9 @@ static void named_fill(const struct sources *s, uint64_t seed, struct pound_indi
 	}
 }
 
-/* An index of an input that changes no output of any row is 0, with an interval of no width.  If the variance is that of m rows,
- * and few, as many as are missed by all m once in forty times may depend on the input: (1 - t)^m = 1/40, t <= ln 40 / m. */
+/* An index of an input that changes no output of any row is 0, with an interval of zero width.  With few effective rows m, the
+ * fraction t of outputs that depend on the input may be as large as all m rows miss with probability 1/40: (1 - t)^m = 1/40,
+ * t <= ln 40 / m. */
 static void unseen_widen(const struct sources *s, struct pound_indices *indices)
 {
 	static const enum pound_index headline[] = {POUND_S1, POUND_ST};
@@ -383,7 +384,7 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 		undefined(&indices->share[POUND_SHARE_FIRST_ONE], 1);
 }
 
-/* How many of the rows that count are among the first n/8, n/4, n/2 and n of the design, and no half width yet. */
+/* The number of valid rows among the first n/8, n/4, n/2 and n of the design; half widths are set to NAN. */
 static void levels_init(struct sources *s, int n_rows)
 {
 	for (int k = 0; k < POUND_LEVELS; k++) {
@@ -395,8 +396,8 @@ static void levels_init(struct sources *s, int n_rows)
 	}
 }
 
-/* The indices of ratios; what they explain is a share of the variance without the noise of few signals if that is known: here
- * of that of the outputs without bias. */
+/* The indices of ratios.  If the noise of few signals is known, `explained` is a fraction of the variance without it: the noise
+ * share is converted to the variance of the bias-corrected outputs. */
 static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 {
 	indices->ratios.n = 0;
@@ -409,8 +410,8 @@ static void ratios_fill(const struct sources *s, struct pound_indices *indices)
 	pound_ratio_indices(s->rows, s->sampling->u, s->sampling->ratios, noise, s->scratch, &indices->ratios);
 }
 
-/* Whether the variance left when the noise is taken away, of which indices are shares, may be 0: it is not positive, or the
- * interval of the noise's share reaches 1. */
+/* Whether the variance after noise correction, the denominator of the indices, may be 0: it is not positive, or the interval of
+ * the noise share reaches 1. */
 static bool lost_in_noise(const struct sources *s, const struct pound_indices *indices)
 {
 	static const enum pound_index corrected[] = {POUND_S1_PICK_FREEZE, POUND_ST_PICK_FREEZE, POUND_S1,
@@ -423,7 +424,7 @@ static bool lost_in_noise(const struct sources *s, const struct pound_indices *i
 	return s->variance_known && share->high >= 1.0;
 }
 
-/* Whether an index has a value that nothing says how good it is: in some group of rows there is no variance left for it. */
+/* Whether an index has a value but no interval: without some group of rows no variance is left for it. */
 static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
 {
 	static const enum pound_index headline[] = {POUND_S1, POUND_ST};
@@ -436,14 +437,14 @@ static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
-/* Whether so few rows hold the variance that their scatter does not show how indices err: one has a fifth of it, or an interval
- * is made by few of them and they hold most of it. */
+/* Whether too few rows hold the variance for their scatter to give valid intervals: fewer than ROWS_BEHIND effective rows in the
+ * variance, or in an interval while few rows hold most of the variance. */
 static bool few_decide(const struct sources *s)
 {
 	return rows_of_variance(s->rows) < ROWS_BEHIND || (*s->behind < ROWS_BEHIND && few_hold_most(s->rows));
 }
 
-/* Rows that intervals would be wide enough with: rows behind them grow as rows do, or slower.  Two digits, upwards. */
+/* Rows needed for valid intervals: effective rows grow at most in proportion to rows.  Rounded up to two digits. */
 static double rows_needed(double n, double behind)
 {
 	double needed = n * ROWS_BEHIND / fmax(behind, 1.0), digits = 1.0;
@@ -476,18 +477,18 @@ size_t pound_index_columns_scratch(const struct pound_sample_values *shape,
 	return pound_rows_scratch(shape) + largest;
 }
 
-/* All sensitivity indices of one output, with 95 % intervals, and what there is to say about them.
+/* All sensitivity indices of one output, with 95 % intervals and notes.
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
- *          sampling  -                                       the design, and whether noise can be distinguished
+ *          sampling  -                                       the design, and whether the noise is known
  *          seed      -                                       of the resamples
- * Returns  value     rows dropped: one of their runs has no output
- *          indices   all, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a note
- *                    where undefined
+ * Returns  value     number of failed rows: a run has no output
+ *          indices   all members, and of the accuracy the half widths from the first rows; indices (n_inputs) each, NAN with a
+ *                    note if undefined
  * Memory   scratch   (pound_index_columns_scratch)
  *
- * Valid    Any design.  With fewer than 30 rows S1 and ST are those of pick-freeze: over six test
- *          functions with noise, n = 16, its totals err by 0.20, those with the polynomial by 0.27; n = 30: 0.14, 0.12.
+ * Valid    Any design.  With fewer than 30 rows S1 and ST are from pick-freeze: for six test functions
+ *          with noise, n = 16, its totals err by 0.20, totals with the polynomial by 0.27; n = 30: 0.14, 0.12.
  * Source   plain_indices.c, noise_correction.c, local_regression.c, chaos_expansion.c
  * Test     unit_index_columns, unit_shared_noise
  */
@@ -505,8 +506,8 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 	                    .scratch = scratch + pound_rows_scratch(values),
 	                    .accuracy = &indices->accuracy,
 	                    .behind = &behind};
-	// of outputs computed elsewhere the noise is known by its variances, which are all there is if samples do not share it;
-	// whether they have noise is not known
+	// outputs computed elsewhere come with noise variances, which suffice if samples do not share noise; whether the
+	// outputs have noise at all is not known
 	const bool elsewhere = values->variance, fresh = sampling->fresh_signals;
 	s.variance_known = elsewhere ? sampling->random : s.corrected;
 	s.corrected = s.variance_known && (!elsewhere || fresh);

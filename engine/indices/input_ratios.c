@@ -1,13 +1,13 @@
-/* input_ratios.c - indices of ratios of inputs, which depend on each other where they share an input.
+/* input_ratios.c - indices of ratios of inputs, which are dependent if they share an input.
  *
- * 1. The output is taken as a function of the ratios and of the inputs in no ratio; a polynomial of these is fitted to it,
- *    a ratio placed by its probability.
- * 2. What a set of variables explains, Var E[g | X_u], follows from the coefficients and from the means E[p(X) q(X')] of
- *    products of terms, where X' shares X_u and is drawn anew given it.  These means are of the inputs alone.
- * 3. Eight groups of rows, each left out in turn, give the bias, that of fitting noise above all, and the interval.
- * 4. What all variables explain is what the fits without a group predict of its outputs (cross-validated R2).
+ * 1. The output is modeled as a function of the ratios and of the inputs in no ratio, by a polynomial of these variables;
+ *    a ratio is replaced by its probability.
+ * 2. The closed variance of a set of variables, Var E[g | X_u], follows from the coefficients and from the means E[p(X) q(X')]
+ *    of products of terms, where X' shares X_u and is redrawn given X_u.  These means depend on the inputs' distributions only.
+ * 3. A jackknife over eight groups of rows removes the bias, mainly from fitting noise, and gives the interval.
+ * 4. The variance explained by all variables is the cross-validated R2 of the fits without one group each.
  *
- * With dependent variables Shapley effects add up to 1 and first-order indices do not; one may be above its total. */
+ * With dependent variables Shapley effects add up to 1 and first-order indices do not; one may exceed its total. */
 #include "engine/design/design.h"
 #include "engine/design/sobol_sequence.h"
 #include "engine/indices/indices.h"
@@ -21,15 +21,15 @@
 enum {
 	GROUPS = 8,
 	CHUNK = POUND_LEGENDRE_CHUNK,
-	POINTS = 4096, // of a net: means of products to 1e-4
-	PLACES = 16,   // of the lower input, behind a ratio's probability
+	POINTS = 4096, // of a Sobol' sequence: means of products to 1e-4
+	PLACES = 16,   // values of the denominator to integrate a ratio's probability over
 	VARIABLES = POUND_FACTORIAL_INPUTS_MAX,
 	SETS = 1 << VARIABLES,
 };
 
 /* ---- distributions ---- */
 
-/* A density in proportion to a power of x between two positive ends. */
+/* A density proportional to a power of x between two positive ends. */
 struct power_law {
 	double exponent, low, high;
 };
@@ -48,7 +48,7 @@ bool pound_ratio_takes(const struct pound_distribution *distribution)
 	return power_law_of(distribution, &law) && law.low > 0.0;
 }
 
-/* Root of a whole order from 1 to 4, of x > 0. */
+/* Root of integer order 1 to 4, of x > 0. */
 static double root(double x, int order)
 {
 	return order == 1   ? x
@@ -65,7 +65,7 @@ static double power(double x, int n)
 	return y;
 }
 
-/* Value of a power law that falls below x with probability t.
+/* Quantile x of a power law at probability t.
  *
  *   x^c = low^c + t (high^c - low^c),  c = exponent + 1;  x = low (high / low)^t for c = 0
  */
@@ -93,12 +93,12 @@ struct variables {
 	int n, n_rest, n_ratios;
 	int rest[VARIABLES];
 	int above[POUND_RATIOS_MAX], below[POUND_RATIOS_MAX];
-	int leader[POUND_RATIOS_MAX]; /* the first ratio with the same input below */
+	int leader[POUND_RATIOS_MAX]; /* the first ratio with the same denominator */
 	struct power_law upper[POUND_RATIOS_MAX], lower[POUND_RATIOS_MAX];
-	double place[POUND_RATIOS_MAX][PLACES]; /* values of the input below */
+	double place[POUND_RATIOS_MAX][PLACES]; /* values of the denominator */
 };
 
-/* Whether a member of a ratio means an input: by its path, or where there is no scene by its name. */
+/* Whether a member of a ratio refers to an input: by its path, or without a scene by its name. */
 static bool is_called(const struct pound_input *input, const char *of)
 {
 	const char *own = input->path ? input->path : input->name;
@@ -122,10 +122,10 @@ static bool in_ratio(const struct pound_study *study, int input)
 	return false;
 }
 
-/* Ratios and the inputs in none: what the indices are of.
+/* The variables of the indices: ratios and the inputs in no ratio.
  *
- * Returns  rest     (n)    numbers of those inputs; NULL: not wanted
- *          value    -      how many variables there are
+ * Returns  rest     (n)    indices of the inputs in no ratio; NULL: not requested
+ *          value    -      number of variables
  */
 int pound_ratio_variables(const struct pound_study *study, int *rest)
 {
@@ -159,7 +159,7 @@ static struct variables variables_of(const struct pound_study *study)
 	return v;
 }
 
-/* The rank of a ratio among all, in [0, 1]: its probability, by a rule of PLACES points. */
+/* The probability of a smaller ratio, in [0, 1], by a quadrature rule of PLACES points. */
 static double ratio_place(const struct variables *v, int k, double ratio)
 {
 	double sum = 0.0;
@@ -170,7 +170,7 @@ static double ratio_place(const struct variables *v, int k, double ratio)
 
 /* ---- means of products of terms ---- */
 
-/* Ratios drawn from four numbers each: above and below, and for the one drawn given some of the first. */
+/* Ratios from four uniform numbers each: numerator and denominator, here and in ratios_redraw. */
 static void ratios_draw(const struct variables *v, const double *t, double *ratio)
 {
 	double below[POUND_RATIOS_MAX];
@@ -180,10 +180,10 @@ static void ratios_draw(const struct variables *v, const double *t, double *rati
 	}
 }
 
-/* Ratios drawn anew given some of them.
+/* Ratios redrawn given some of them.
  *
- * The input below several ratios a_k has, given those, a density in proportion to its own times the product of a_k's upper
- * density at a_k x times x: again a power law, on the values for which all of them are possible.
+ * Given ratios a_k with the same denominator x, the density of x is proportional to its own times the product over k of the
+ * numerator's density at a_k x times x: again a power law, on the x for which all given ratios are possible.
  */
 static void ratios_redraw(const struct variables *v, unsigned given, const double *t, const double *ratio,
                           double *anew)
@@ -202,18 +202,18 @@ static void ratios_redraw(const struct variables *v, unsigned given, const doubl
 	}
 }
 
-/* What is fitted and what it is judged by: where everything lies in the scratch. */
+/* The fit, and the layout of the scratch memory. */
 struct fit {
 	const struct pound_rows *rows;
 	const double *u; /* (n x 2 x n_inputs) */
 	const struct pound_study *study;
 	struct variables variables;
 	int degree, terms, squares;
-	int block; /* terms in the ratios alone */
+	int block; /* number of terms in the ratios alone */
 	struct pound_legendre chunk, ratios;
-	double *sums;     /* of terms of twice the degree, of each group and of all  ((GROUPS + 1) x squares) */
-	double *products; /* of term and output, likewise  ((GROUPS + 1) x terms) */
-	double square[GROUPS]; /* sum of the outputs squared, of each group */
+	double *sums; /* of terms up to twice the degree, of each group and of all  ((GROUPS + 1) x squares) */
+	double *products;      /* sums of term times output, likewise  ((GROUPS + 1) x terms) */
+	double square[GROUPS]; /* sum of squared outputs, of each group */
 	double *gram;          /* (terms x terms) */
 	double *means; /* of products of terms in the ratios, for each set of them  (2^ratios x block x block) */
 	double *point, *anew;          /* terms at a point  (block) each */
@@ -257,7 +257,7 @@ static size_t carve(struct fit *f, double *scratch, const struct pound_sample_va
 	return total;
 }
 
-/* Terms in the ratios at one point, by their products with 1. */
+/* Terms in the ratios at one point, by projecting 1. */
 static void terms_at(struct fit *f, const double *ratio, double *terms)
 {
 	const double one[CHUNK] = {1.0};
@@ -268,7 +268,7 @@ static void terms_at(struct fit *f, const double *ratio, double *terms)
 	pound_legendre_project(&f->ratios, f->degree, one, terms);
 }
 
-/* E[p(X) q(X')] for X' that shares the ratios in `given`, by a net; without any the product of the two means. */
+/* E[p(X) q(X')] for X' that shares the ratios in `given`, by a Sobol' sequence; the product of the means if none is given. */
 static void means_fill(struct fit *f, unsigned given)
 {
 	const int n = f->block, n_columns = 4 * f->variables.n_ratios;
@@ -276,7 +276,7 @@ static void means_fill(struct fit *f, unsigned given)
 	struct pound_sequence net[4 * POUND_RATIOS_MAX];
 	for (int c = 0; c < n_columns; c++) {
 		pound_sequence_init(&net[c], c);
-		// the same for every study: the points are a rule, not a sample
+		// the same for every study: the points are a quadrature rule, not a sample
 		pound_sequence_scramble(&net[c],
 		                        (struct pound_stream){.what = POUND_STREAM_DESIGN, .sample = (uint32_t)c});
 	}
@@ -293,7 +293,7 @@ static void means_fill(struct fit *f, unsigned given)
 			for (int q = 0; q < (given ? n : 1); q++)
 				mean[p * n + q] += f->point[p] * f->anew[q] / POINTS;
 	}
-	// term 0 is 1: the first column, the means themselves, is the last to be replaced
+	// term 0 is 1: the first column holds the means themselves and is replaced last
 	for (int p = 0; p < n && !given; p++)
 		for (int q = n - 1; q >= 0; q--)
 			mean[p * n + q] = mean[p * n] * mean[q * n];
@@ -326,7 +326,7 @@ static void sample_enter(struct fit *f, int point, int row, int sample)
 	}
 }
 
-/* Adds rows of one group, a chunk of samples at a time. */
+/* Adds the rows of one group, in chunks of samples. */
 static void group_fill(struct fit *f, int group)
 {
 	const int n_samples = f->rows->n_samples;
@@ -379,8 +379,8 @@ static void coefficients_fill(struct fit *f, int without)
 
 /* ---- indices ---- */
 
-/* Adds what a part of the polynomial, with one and the same term in the inputs in no ratio, explains by each set of
- * ratios.  Its terms are those in the ratios of the degree that is left, in the same order as all of them. */
+/* Adds the variance explained by each set of ratios in one part of the polynomial, whose terms have the same factor in the
+ * inputs in no ratio.  The other factors are the terms in the ratios up to the remaining degree, in the order of all terms. */
 static int part_add(const struct fit *f, const double *coefficients, int degree_left, bool is_mean,
                     double *explained)
 {
@@ -406,7 +406,7 @@ static int part_add(const struct fit *f, const double *coefficients, int degree_
 	return used;
 }
 
-/* Variance that each set of variables explains, bit v for variable v. */
+/* Closed variance of each set of variables, bit v for variable v. */
 static void explained_fill(const struct fit *f, double explained[SETS])
 {
 	const struct variables *v = &f->variables;
@@ -433,7 +433,7 @@ static void explained_fill(const struct fit *f, double explained[SETS])
 	}
 }
 
-/* How much of a group's sum of squares the fit without it explains: sum y^2 - (y - g)^2, from the sums of terms. */
+/* The part of a group's sum of squares explained by the fit without the group: sum y^2 - (y - g)^2, from the sums of terms. */
 static double predicted(struct fit *f, int group)
 {
 	const double *c = f->coefficients, *products = f->products + (size_t)group * f->terms;
@@ -451,7 +451,7 @@ static double predicted(struct fit *f, int group)
 
 enum { FIRST, TOTAL, SHAPLEY, KINDS };
 
-/* The indices of every variable from what sets explain. */
+/* The indices of every variable from the closed variances. */
 static void values_fill(const struct fit *f, const double explained[SETS], double *value)
 {
 	const int n = f->variables.n;
@@ -472,7 +472,7 @@ static void values_fill(const struct fit *f, const double explained[SETS], doubl
 	}
 }
 
-/* A value of all rows, by the values without each group: less its bias, with the scatter of the pseudo-values. */
+/* Jackknife: the bias-corrected value of all rows, with the interval from the pseudo-values. */
 static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VARIABLES], int k)
 {
 	double mean = 0.0, squares = 0.0;
@@ -485,11 +485,11 @@ static struct pound_estimate jackknife(const double value[GROUPS + 1][KINDS * VA
 	return (struct pound_estimate){middle, middle - half, middle + half};
 }
 
-/* Cross-validated R2: the share of the outputs' squares that fits without them predict, of which noise is a part; none, where the
- * interval says next to nothing.  It errs to the low side, by the square of what the fits err by, and stays below 1. */
+/* Cross-validated R2: the fraction of the outputs' squares, less their noise, that is predicted by fits without these outputs;
+ * NAN if the interval is too wide.  It is biased low, by the squared error of the fits, and stays below 1. */
 static struct pound_estimate explained_of(const struct fit *f, const double of_group[GROUPS], double noise)
 {
-	const double widest = 0.25; // half of an interval that still distinguishes a half from all
+	const double widest = 0.25; // half width that still distinguishes 0.5 from 1
 	double share[GROUPS + 1][KINDS * VARIABLES] = {{0.0}}, above = 0.0, below = 0.0;
 	for (int g = 0; g < GROUPS; g++) {
 		above += of_group[g];
@@ -508,17 +508,17 @@ size_t pound_ratio_scratch(const struct pound_sample_values *shape, const struct
 	return study->n_ratios ? carve(&fit, NULL, shape, study) : 0;
 }
 
-/* Indices of ratios of inputs and of the inputs in none, of the output as a function of these.
+/* Indices of ratios of inputs and of the inputs in no ratio, with the output as a function of these variables.
  *
  * Given    rows       -                          outputs
  *          u          (n x 2 x n_inputs)         the design as probabilities in (0, 1), rows of A and B
  *          study      -                          inputs and ratios
- *          noise      -                          share of the outputs' variance that no variable explains
+ *          noise      -                          fraction of the outputs' variance that is noise
  * Returns  results    -                          ratios first, in the order of the study, then the inputs
  * Memory   scratch    (pound_ratio_scratch)
  *
- * Valid    Any design of POUND_ROWS_MIN rows or more; ratios of uniform or log-uniform inputs above 0.  The output's part
- *          that no polynomial of the degree meets is missing, and so is what it owes to the inputs beyond their ratios.
+ * Valid    Any design of POUND_ROWS_MIN rows or more; ratios of uniform or log-uniform inputs above 0.  Missing are the
+ *          part of the output that no polynomial of the degree fits, and its dependence on inputs other than through ratios.
  * Source   Song, Nelson, Staum 2016, SIAM/ASA J. Uncertain. Quantif. 4, 1060-1083, for Shapley effects of dependent inputs
  * Test     unit_input_ratios
  */

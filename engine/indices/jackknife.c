@@ -1,11 +1,11 @@
 /* jackknife.c - 95 % intervals from groups of rows that are independent of each other: batches of Latin hypercubes, or
- * independently scrambled nets.
+ * independently scrambled Sobol' sequences.
  *
  * 1. The statistic of all rows, theta, and of all but group k, theta_k, give M pseudo-values M theta - (M - 1) theta_k.
- * 2. Their scatter is that of M independent numbers with the mean theta.
- * 3. The interval is theta and Student's quantile for M - 1 degrees of freedom times their standard error to either side.
+ * 2. The pseudo-values scatter like M independent numbers with the mean theta.
+ * 3. The interval is theta +- Student's quantile for M - 1 degrees of freedom times the standard error of the pseudo-values.
  *
- * Within a group rows may be as dependent as they like: a net's small error counts, as does a hypercube's.
+ * Rows within a group may be dependent: the interval shows the small error of a Sobol' sequence or Latin hypercube.
  * Tukey 1958, Ann. Math. Stat. 29, 614; L'Ecuyer, Nakayama, Owen, Tuffin 2023, Winter Simulation Conference. */
 #include "engine/indices/indices.h"
 #include "engine/numeric/elementary.h"
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Student's law ---- */
+/* ---- Student's t distribution ---- */
 
 /* Probability that |t| is less than sqrt(freedom) tan(theta), from the angle's sine and cosine.
  *
@@ -30,11 +30,11 @@ static double student_within(int freedom, double turn, double sine, double cosin
 		sum += term;
 		term *= cosine * cosine * (k - 1) / k;
 	}
-	// 2/pi times the angle is four turns
+	// turn is the angle over 2 pi, so 2/pi times the angle is 4 turn
 	return odd ? 4 * turn + 2 / M_PI * sine * sum : sine * sum;
 }
 
-/* 97.5 % quantile of Student's law, the half width of a 95 % interval in standard errors.
+/* 97.5 % quantile of Student's t, the half width of a 95 % interval in standard errors.
  *
  * Given    freedom     -       degrees of freedom  >= 1
  * Returns  value       t       by bisection of the angle whose tangent is t / sqrt(freedom)
@@ -44,7 +44,7 @@ static double student_within(int freedom, double turn, double sine, double cosin
 double pound_jackknife_student(int freedom)
 {
 	if (freedom > 1 << 14)
-		return POUND_NORMAL_95; // by 1.5e-4 of its width
+		return POUND_NORMAL_95; // relative error below 1.5e-4
 	double low = 0, high = 0.25, sine = 1, cosine = 0;
 	for (double turn = 0.125; low < turn && turn < high; turn = low + 0.5 * (high - low)) {
 		pound_elementary_sincos(turn, &sine, &cosine);
@@ -54,7 +54,7 @@ double pound_jackknife_student(int freedom)
 	return sqrt(freedom) * sine / cosine;
 }
 
-/* The quantile for one over the degrees of freedom.
+/* The quantile as a function of one over the degrees of freedom.
  *
  * Source   many degrees: Abramowitz, Stegun 1964, 26.7.5; the error is below 1e-4 from 20 on
  */
@@ -68,14 +68,14 @@ static double student_of(double over_freedom)
 
 /* ---- pseudo-values ---- */
 
-/* The group of a row that counts. */
+/* The group of a valid row. */
 int pound_jackknife_group(const struct pound_scatter *scatter, int row)
 {
 	int64_t number = scatter->row ? scatter->row[row] : row;
 	return (int)(number / scatter->grouping.run % scatter->grouping.n);
 }
 
-/* Sums of the moments of each group's rows, and how many rows it has  (n x (n_moments + 1)). */
+/* Sums of the moments of each group's rows, and the group's number of rows  (n x (n_moments + 1)). */
 static void sums_fill(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
                       int n_rows, double *sums)
 {
@@ -91,13 +91,13 @@ static void sums_fill(const struct pound_statistic *statistic, const struct poun
 	}
 }
 
-/* No more than pound_bootstrap_scratch for as many rows. */
+/* At most pound_bootstrap_scratch for the same number of rows. */
 size_t pound_jackknife_scratch(const struct pound_scatter *scatter, int n_moments)
 {
 	return (size_t)scatter->grouping.n * (size_t)(n_moments + 1);
 }
 
-/* The pseudo-values of the groups, one after the other: their means and sums of squared deviations. */
+/* Running means and sums of squared deviations of the groups' pseudo-values. */
 struct pseudo {
 	int n;
 	double mean[POUND_VALUES_MAX], squares[POUND_VALUES_MAX];
@@ -117,12 +117,12 @@ static void pseudo_add(struct pseudo *pseudo, int groups, const double *all, con
 /* A statistic's values, with 95 % intervals from the groups of rows.
  *
  * Given    statistic  -               moments of a row, and n_values numbers from their means
- *          scatter    -               the groups; those without a row do not count
- * Returns  estimates  (n_values)      low and high are NAN with fewer than two groups, or where leaving one out leaves
- *                                     nothing to define the value
+ *          scatter    -               the groups; empty groups do not count
+ * Returns  estimates  (n_values)      low and high are NAN with fewer than two groups, or if the value is undefined
+ *                                     without one of the groups
  * Memory   scratch    (pound_jackknife_scratch)
  *
- * Source   of pooled moments, not of the mean of the groups' own values, which is biased for small groups
+ * Source   uses pooled moments, not the mean of the groups' own values, which is biased for small groups
  * Test     unit_jackknife: the_interval_of_a_mean_is_students, a_ratio_has_the_interval_of_its_pseudo_values
  */
 void pound_jackknife_estimates(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
@@ -160,10 +160,10 @@ void pound_jackknife_estimates(const struct pound_statistic *statistic, const st
 	}
 }
 
-/* Rows that the scatter of a mean over rows is made of.
+/* Effective number of rows in the scatter of a mean over rows.
  *
  * Given    value      (n_rows)        of each row
- * Returns  value      -               (sum e^2)^2 / sum e^4, e the deviations from the mean: n over their kurtosis; n if all are the same
+ * Returns  value      -               (sum e^2)^2 / sum e^4, e the deviations from the mean: n over their kurtosis; n if all are equal
  *
  * Test     unit_jackknife: few_rows_are_behind_a_rare_event
  */
@@ -183,11 +183,11 @@ double pound_jackknife_rows(const double *value, int n_rows)
 /* Half of the 95 % interval of a mean over rows.
  *
  * Given    value      (n_rows)        of each row
- *          scatter    -               groups: Student's law over the sums of their rows; none: the normal law over rows
- * Returns  value      -               NAN for fewer than two rows, or groups
+ *          scatter    -               groups: Student's t over the sums of their rows; none: the normal law over rows
+ * Returns  value      -               NAN for fewer than two rows or groups
  *
- * The estimate of a variance from G values of kurtosis k has the relative variance 2 / (G - 1) + (k - 3) / G, that of 2 over its
- * degrees of freedom, so that where m rows make up the scatter there are 1 / (1 / (G - 1) + (1/m - 3/n) / 2) of them
+ * The estimate of a variance from G values of kurtosis k has the relative variance 2 / (G - 1) + (k - 3) / G.  Equating it to 2
+ * over the degrees of freedom gives, with m effective rows in the scatter, 1 / (1 / (G - 1) + (1/m - 3/n) / 2) degrees of freedom
  * (Satterthwaite 1946, Biometrics Bull. 2, 110-114).
  *
  * Memory   sums       (groups)

@@ -10,7 +10,7 @@
 
 enum { CHUNK = POUND_LEGENDRE_CHUNK, DEGREE_MAX = 2 * POUND_LEGENDRE_DEGREE_MAX };
 
-/* Terms of total degree up to `degree` in n_inputs inputs: (n_inputs + degree) over degree. */
+/* Number of terms of total degree up to `degree`: binomial (n_inputs + degree) over degree. */
 int pound_legendre_terms(int n_inputs, int degree)
 {
 	int64_t terms = 1;
@@ -24,7 +24,7 @@ static double *column(const struct pound_legendre *chunk, int input, int degree)
 	return chunk->column + ((size_t)input * (chunk->degree + 1) + degree) * CHUNK;
 }
 
-/* Chunk of no points yet.  The polynomials L_k(u) = sqrt(2 k + 1) P_k(2 u - 1) follow from
+/* An empty chunk.  The polynomials L_k(u) = sqrt(2 k + 1) P_k(2 u - 1) follow from
  *
  *   L_(k+1) = up_k (2 u - 1) L_k - down_k L_(k-1),   up_k = sqrt((2k+1) (2k+3)) / (k+1),
  *   down_k = k sqrt((2k+3) / (2k-1)) / (k+1)
@@ -41,7 +41,7 @@ void pound_legendre_init(struct pound_legendre *chunk, int n_inputs, int degree)
 	}
 }
 
-/* Enters one input of one point. */
+/* Sets one input of one point. */
 void pound_legendre_point(const struct pound_legendre *chunk, int point, int input, double u)
 {
 	double *l = column(chunk, input, 0) + point, z = 2.0 * u - 1.0, before = 0.0, here = 1.0;
@@ -56,7 +56,7 @@ void pound_legendre_point(const struct pound_legendre *chunk, int point, int inp
 
 typedef double pair __attribute__((vector_size(16), may_alias, aligned(8)));
 
-/* Scalar product, in four sums side by side. */
+/* Scalar product in four partial sums. */
 static double dot(const double *x, const double *y, int n)
 {
 	pair sum[2] = {{0}};
@@ -72,7 +72,7 @@ static double dot(const double *x, const double *y, int n)
 	return sum[0][0] + sum[0][1] + rest;
 }
 
-/* The product so far times the next input's polynomial; of degree 0 it is itself. */
+/* The partial product times the next input's polynomial; degree 0 returns the product itself. */
 static const double *times(const struct pound_legendre *chunk, int input, int degree, const double *product)
 {
 	if (degree == 0)
@@ -95,7 +95,7 @@ static double *project_from(const struct pound_legendre *chunk, int input, int d
 	return sums;
 }
 
-/* Adds to the sums of value times term over the points.
+/* Adds to the sums over the points of value times term.
  *
  * Given    value     (POUND_LEGENDRE_CHUNK)     of each point
  * Returns  sums      (terms of degree)          += sum over the points of value times term
@@ -158,16 +158,16 @@ bool pound_legendre_next(int n_inputs, int degree, int *degrees)
 	return false;
 }
 
-/* What turns products of terms into sums of terms. */
+/* Coefficients that turn products of terms into sums of terms. */
 struct linearisation {
 	int n_inputs;
 	/* L_a L_b = sum over c of weight[a][b][c] L_c */
 	double weight[POUND_LEGENDRE_DEGREE_MAX + 1][POUND_LEGENDRE_DEGREE_MAX + 1][DEGREE_MAX + 1];
-	/* place[j][r][c]: terms before those of degree c in input j, when r is left for it and the inputs after it */
+	/* place[j][r][c]: number of terms before the terms of degree c in input j, if degree r is left for inputs j and later */
 	int place[POUND_INPUTS_MAX][DEGREE_MAX + 1][DEGREE_MAX + 1];
 };
 
-/* The product of two Legendre polynomials as a sum of them.
+/* The product of two Legendre polynomials as a sum of Legendre polynomials.
  *
  *   P_a P_b = sum over r of A_r A_(a-r) A_(b-r) / A_(a+b-r) (2 c + 1) / (2 a + 2 b - 2 r + 1) P_c,   c = a + b - 2 r,
  *   A_r = 1 3 5 .. (2 r - 1) / r!
@@ -217,7 +217,7 @@ static double product_sum(const struct linearisation *l, int input, int left, co
  * Given    sums     (terms of 2 degree)             sum over the points of each term
  * Returns  gram     (terms of degree, squared)      upper triangle: sum over the points of the products of two terms
  *
- * For 4 inputs and degree 6 this takes 1820 sums over the points in place of 22155.
+ * For 4 inputs and degree 6 this takes 1820 sums over the points instead of 22155.
  *
  * Test     unit_legendre: the_gram_matrix_is_that_of_the_terms_values
  */
@@ -245,9 +245,9 @@ static void subtract(double *x, double factor, const double *y, int n)
 		x[k] -= factor * y[k];
 }
 
-/* Cholesky's factor of a Gram matrix, in its upper triangle, with the inverse of the diagonal.
+/* Cholesky factor of a Gram matrix, in the upper triangle, with the inverse diagonal.
  *
- * A term that the points cannot distinguish from those before it has 0 there.
+ * A term that is linearly dependent on earlier terms at the points has the inverse diagonal 0.
  */
 void pound_legendre_factor(double *gram, int n)
 {
@@ -265,11 +265,11 @@ void pound_legendre_factor(double *gram, int n)
 	}
 }
 
-/* Solves gram x = b, of which b becomes x.
+/* Solves gram x = b; x overwrites b.
  *
  * Given    factor    of gram, by pound_legendre_factor
  *
- * A term that the points cannot distinguish from those before it gets the coefficient 0.
+ * A term that is linearly dependent on earlier terms at the points gets the coefficient 0.
  *
  * Test     unit_chaos_expansion: a_polynomial_within_the_degree_is_met_exactly
  */

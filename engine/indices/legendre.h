@@ -1,7 +1,7 @@
-/* legendre.h - polynomials of several inputs, orthonormal for independent uniform inputs, in order of enumeration.
+/* legendre.h - polynomials of several inputs, orthonormal for independent uniform inputs.
  *
- * A term is a product of Legendre polynomials, one of each input, of total degree up to a bound.  Terms are counted
- * with the degree in the last input running fastest; term 0 is 1.  Points come in chunks, for speed. */
+ * A term is a product of Legendre polynomials, one of each input, of total degree up to a bound.  Terms are numbered
+ * with the degree in the last input running fastest; term 0 is 1.  Points are processed in chunks, for speed. */
 #ifndef LEGENDRE_H
 #define LEGENDRE_H
 
@@ -11,11 +11,11 @@ enum { POUND_LEGENDRE_DEGREE_MAX = 6, POUND_LEGENDRE_CHUNK = 256 };
 
 /* Up to POUND_LEGENDRE_CHUNK points and the values of the one-dimensional polynomials there. */
 struct pound_legendre {
-	int n_inputs, degree; /* of the largest term any function is asked for */
+	int n_inputs, degree; /* largest degree passed to any function */
 	int n;                /* points */
 	double up[2 * POUND_LEGENDRE_DEGREE_MAX], down[2 * POUND_LEGENDRE_DEGREE_MAX]; /* of the recurrence */
 	double *column;  /* (n_inputs x (degree + 1) x POUND_LEGENDRE_CHUNK) */
-	double *product; /* (n_inputs x POUND_LEGENDRE_CHUNK), work space */
+	double *product; /* (n_inputs x POUND_LEGENDRE_CHUNK), scratch */
 };
 
 /* Sets all but the points and the memory. */
@@ -28,7 +28,7 @@ void pound_legendre_expand(const struct pound_legendre *chunk, int degree, const
                            double *value);
 void pound_legendre_gram(int n_inputs, int degree, const double *sums, double *gram);
 
-/* Least squares: gram x = b, of which b becomes x  (n); the factor overwrites the upper triangle of gram  (n x n). */
+/* Least squares: gram x = b, x overwrites b  (n); the factor overwrites the upper triangle of gram  (n x n). */
 void pound_legendre_factor(double *gram, int n);
 void pound_legendre_solve(const double *factor, int n, double *b);
 

@@ -1,21 +1,21 @@
-/* local_regression.c - first-order indices by local-linear regression, each row predicted from its neighbours.
+/* local_regression.c - first-order indices by local-linear regression, each row predicted from its neighbors.
  *
- * 1. In every sample of the design the rows are sorted by the input's value, and each is predicted from the K and from the
- *    2 K nearest ranks on either side, itself left out.
- * 2. The mean product of output and prediction estimates the variance of the conditional mean, but for what the latter
- *    changes between a row and its neighbours: where it jumps that goes as the mean distance between them, so that the two
- *    reaches tell what none would have.
- * 3. The step from the nearer reach to none is in the interval, for where the change goes as no straight line.
+ * 1. In every sample block of the design the rows are sorted by the input's value, and each row is predicted from the K and
+ *    from the 2 K nearest ranks on either side, without itself.
+ * 2. The mean product of output and prediction estimates the variance of the conditional mean, with a bias because the
+ *    conditional mean changes between a row and its neighbors.  At a jump the bias is proportional to the mean distance
+ *    between them, so that the two reaches K and 2 K are extrapolated linearly to distance 0.
+ * 3. The extrapolation step is added to the interval, because the bias may not be linear in the distance.
  *
- * Every sample block of a Latin hypercube or random design serves, so that all runs count for each input.
- * Wrong for quasi-random designs, where neighbours in one input are related in the others. */
+ * Every sample block of a Latin hypercube or random design is used, so that all runs count for each input.
+ * Invalid for quasi-random designs, where neighbors in one input are related in the others. */
 #include "engine/indices/indices.h"
 
 #include <gsl/gsl_sort_double.h>
 #include <math.h>
 #include <string.h>
 
-/* The least-squares line through all but one of the first `n` values against their ranks, at the rank left out. */
+/* The least-squares line through all but one of the first `n` values against their ranks, at the excluded rank. */
 static double line_without(const double *y, int n, int left_out)
 {
 	double x_mean = (0.5 * n * (n - 1) - left_out) / (n - 1), y_mean = 0.0, xx = 0.0, xy = 0.0;
@@ -30,12 +30,12 @@ static double line_without(const double *y, int n, int left_out)
 	return y_mean + xy / xx * (left_out - x_mean);
 }
 
-/* Predictions of values in the order of an input, each from its neighbours alone.
+/* Leave-one-out predictions of values sorted by an input, from the neighbors.
  *
  * Given    y         (n)     outputs in ascending order of the input
  *          reach     K       ranks on either side  1 <= K, 2 K + 1 <= n
- * Returns  fit       (n)     least-squares line through the 2 K other ones of 2 K + 1 ranks, at the rank itself;
- *                            the window is centred (the line is then the mean) but at the ends
+ * Returns  fit       (n)     least-squares line through the other 2 K of 2 K + 1 ranks, at the rank itself;
+ *                            the window is centered (the line is then the mean) except at the ends
  *
  * Test     unit_local_regression: the_golden_predictions_are_met
  */
@@ -55,16 +55,16 @@ void pound_local_regression_fit(const double *y, int n, int reach, double *fit)
 	}
 }
 
-// ten ranks a side once there are rows enough
+// ten ranks on either side if there are enough rows
 static int reach_of(int n_rows)
 {
 	return n_rows >= 300 ? 10 : n_rows / 30;
 }
 
-/* Predictions by the means of the other rows at the same value; of a row alone at its value nothing is known.
+/* Predictions by the means of the other rows with the same value; 0 for a row that is alone with its value.
  *
  * Given    y         (n)     outputs in ascending order of the input
- *          level     (n)     number of the value of each
+ *          level     (n)     index of the input's value
  */
 static void levels_fit(const double *y, const double *level, int n, double *fit)
 {
@@ -77,20 +77,20 @@ static void levels_fit(const double *y, const double *level, int n, double *fit)
 	}
 }
 
-/* One input's sums over the sample blocks: of each row, output times prediction by the nearer and by the wider reach, and
- * the latter prediction squared. */
+/* One input's means over the sample blocks, for each row: output times prediction with reach K (near) and 2 K (wide), and
+ * the wide prediction squared. */
 struct window_sums {
 	double *near, *wide, *square; /* (n_rows) each */
 };
 
-/* Where everything lies in the scratch. */
+/* Layout of the scratch memory. */
 struct space {
 	double *variance, *y, *fit, *fit_wide, *level; /* (n_rows) each */
 	struct window_sums sums;
 	size_t *order;      /* (n_rows) */
 	double *group_sums; /* (groups, at most n_rows) */
 	double *influence;  /* of each row on each input's index  (n_inputs x n_rows) */
-	double *step;       /* from the nearer reach to none, of each input's index  (n_inputs) */
+	double *step;       /* extrapolation step from reach K to distance 0, of each input's index  (n_inputs) */
 };
 
 static struct space carve(double *scratch, int n_rows, int n_inputs)
@@ -113,7 +113,7 @@ size_t pound_local_regression_scratch(const struct pound_sample_values *shape)
 	return (size_t)(10 + shape->n_inputs) * shape->n_rows + shape->n_inputs;
 }
 
-/* Adds a sample block, of which the rows are in order; levels: of the input, 0: values hardly come twice. */
+/* Adds a sample block, with the rows in `order`; levels: values of a discrete input, 0: other inputs. */
 static void block_add(const struct pound_rows *rows, int sample, double grand, int levels,
                       const struct space *at)
 {
@@ -144,14 +144,14 @@ static double half_width(const struct pound_rows *rows, int n, const struct spac
 	return sqrt(sampling * sampling + at->step[input] * at->step[input]);
 }
 
-/* Index and interval from a row's mean products, with the variance of its outputs about the grand mean.
+/* Index and interval from the rows' mean products and the variance of their outputs about the grand mean.
  *
- * Returns  influence  (n_rows)  NAN where the index is undefined
+ * Returns  influence  (n_rows)  NAN if the index is undefined
  *
- *   S V = near + (1 + 1/K) (near - wide):  to distance 0 by a line through the mean distances (K + 1) / 2, (2 K + 1) / 2
+ *   S V = near + (1 + 1/K) (near - wide):  linear extrapolation to distance 0 from mean distances (K + 1) / 2, (2 K + 1) / 2
  *
- * The influence of a row on mean(y m), the prediction m estimated from the others, is 2 y m - m^2; of the difference of two
- * such means, made of products of the errors of two rows alone, sqrt(2) times y (m - m'), as each pair of rows counts twice.
+ * The influence of a row on mean(y m), with the prediction m estimated from other rows, is 2 y m - m^2.  The difference of two
+ * such means consists of products of the errors of two rows; its influence is sqrt(2) y (m - m'), as each pair counts twice.
  */
 static struct pound_estimate influence_interval(const struct pound_rows *rows, int input,
                                                 const struct space *at)
@@ -177,7 +177,7 @@ static struct pound_estimate influence_interval(const struct pound_rows *rows, i
 	return (struct pound_estimate){s, s - half, s + half};
 }
 
-/* Mean over the samples of a row of their squared outputs about the grand mean, less their noise. */
+/* Mean over the samples of a row of the squared outputs about the grand mean, less their noise variance. */
 static double variances_fill(const struct pound_rows *rows, bool corrected, double *variance)
 {
 	const int n_samples = rows->n_samples, n_noises = n_samples * rows->n_signals;
@@ -199,7 +199,7 @@ static double variances_fill(const struct pound_rows *rows, bool corrected, doub
 	return grand;
 }
 
-/* The rows in order of an input's column of a matrix, and the values they then have of an input of few. */
+/* Sorts the rows by an input's column of A or B; for a discrete input also sets the value index of each. */
 static void rows_sort(const struct pound_rows *rows, const double *x, int matrix, int input, int levels,
                       const struct space *at)
 {
@@ -215,17 +215,17 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  *
  * Given    rows       -                            outputs and their noise
  *          x          (n x 2 x n_inputs)           the design, rows of A and B, or its probabilities; only the
- *                                                  order within a column counts, but of inputs of few values
- *          noise      -                            of the variance: kept or removed (NAN for one signal)
+ *                                                  order within a column counts, except for discrete inputs
+ *          noise      -                            in the variance: kept or removed (NAN for one signal)
  * Returns  first      (n_inputs)                   with 95 % intervals from the influence of the rows; NAN for
- *                                                  fewer than POUND_ROWS_MIN
+ *                                                  fewer than POUND_ROWS_MIN rows
  * Memory   scratch    (pound_local_regression_scratch)
  *
- * Noise needs no correction above: a row and its neighbours have different signals.  Of an input of few values (a discrete
- * one, pound_rows_levels) the means at its values take the place of the lines: exact, and of no reach.
+ * The numerator needs no noise correction: a row and its neighbors have different signals.  For a discrete input
+ * (pound_rows_levels) the means at its values replace the lines: exact, without extrapolation.
  *
- * Valid    Latin hypercube and random designs of 30 rows or more; the bias of a jump is gone, that of a wave of some 8
- *          reaches is 0.04 of the variance, and in the interval
+ * Valid    Latin hypercube and random designs of 30 rows or more; the bias of a jump is removed, the bias of a wave as long as
+ *          some 8 reaches is 0.04 of the variance, and inside the interval
  * Source   lag averaging attains the efficiency bound: Klein, Rochet 2023, arXiv 2306.05842; extrapolation: Richardson
  * Test     unit_local_regression
  */
@@ -257,9 +257,9 @@ void pound_local_regression_behind(const struct pound_rows *rows, double *scratc
 		behind[j] = pound_jackknife_rows(at.influence + (size_t)j * rows->n_rows, rows->n_rows);
 }
 
-/* Half widths of the intervals that the first rows' influences give.
+/* Half widths of the intervals from the influences of the first n rows.
  *
- * Given    n          at most those of rows
+ * Given    n          at most rows->n_rows
  *          scratch    as pound_local_regression_first left it
  * Returns  half       (n_inputs)
  *
@@ -268,7 +268,7 @@ void pound_local_regression_behind(const struct pound_rows *rows, double *scratc
 void pound_local_regression_first_rows(const struct pound_rows *rows, int n, double *scratch, double *half)
 {
 	const struct space at = carve(scratch, rows->n_rows, rows->n_inputs);
-	double of_all = 0.0, of_first = 0.0; // variances; an influence is a share of that of all rows
+	double of_all = 0.0, of_first = 0.0; // variances; influences are relative to the variance of all rows
 	for (int i = 0; i < rows->n_rows; i++) {
 		of_all += at.variance[i] / rows->n_rows;
 		of_first += i < n ? at.variance[i] / n : 0.0;

@@ -1,29 +1,29 @@
-/* noise_correction.c - indices of a model with random signals: as they come out, corrected to infinitely many signals, and
- * the signals' own share.
+/* noise_correction.c - indices of a model with random signals: raw, corrected to infinitely many signals, and the variance
+ * fraction due to the signals.
  *
- * An output is a mean over R signals.  A product of two outputs p, q of a row has the expectation of the product of
- * their means over all signals plus the covariance that they owe to their R signals; an unbiased estimate of that,
- * noise_pq, is known within the row.  Every product p q is therefore replaced by p q - noise_pq.  This holds whether
- * the samples of a row share their signals (noise_pq counts) or not (its mean is 0).  Where an output is a ratio of two such
- * means, p and q are without its bias (valid_rows.c); raw indices are of the outputs as they come out. */
+ * An output is a mean over R signals.  The expected product of two outputs p, q of a row is the product of their means
+ * over all signals plus the covariance caused by the R signals; noise_pq, an unbiased estimate of this covariance,
+ * follows from the row alone.  Every product p q is therefore replaced by p q - noise_pq, whether the samples of a
+ * row share their signals or not (the mean of noise_pq is then 0).  If an output is a ratio of two such means, its bias
+ * is removed from p and q (valid_rows.c); raw indices use the uncorrected outputs. */
 #include "engine/indices/indices.h"
 
 #include <math.h>
 
-// means of A and B; half a^2 + b^2 and the mean square of all samples
+// means of A and B; (a^2 + b^2) / 2, and the mean square of all samples
 enum { A, B, PAIR, ALL, OF_SAMPLES };
-// those raw, and then those corrected; noise of A with B, and mean square of that of all samples
+// raw moments, then corrected ones; noise covariance of A and B, mean noise variance of all samples
 enum { CORRECTED = OF_SAMPLES, NOISE_AB = 2 * OF_SAMPLES, NOISE_ALL, FIRST_INPUT };
-// of every input: c - a, b (c - a), (c - a)^2 / 2
+// for every input: c - a, b (c - a), (c - a)^2 / 2
 enum { CHANGE, PRODUCT, SQUARE, OF_INPUT };
-// those raw, and then those corrected; noise of B with c - a
+// raw moments, then corrected ones; noise covariance of B and c - a
 enum { INPUT_CORRECTED = OF_INPUT, NOISE_PRODUCT = 2 * OF_INPUT, PER_INPUT };
-// values of every input, each n_inputs long, and then those of the signals
+// values of the inputs, n_inputs each, then the values of the signals
 enum { FIRST_RAW, TOTAL_RAW, FIRST, TOTAL, WITH_SIGNAL, BLOCKS };
 enum { SIGNAL_TOTAL_ONE, SIGNAL_TOTAL, SIGNAL_FIRST, SINGLES };
 
 /* Given    y      outputs of one row
- * Returns  m      OF_SAMPLES moments;  input: OF_INPUT of the first input, those of the next one PER_INPUT behind */
+ * Returns  m      OF_SAMPLES moments;  input: OF_INPUT moments of the first input, the next input's at + PER_INPUT */
 static void outputs_moments(const double *y, int n_inputs, double *m, double *input)
 {
 	const double a = y[0], b = y[1];
@@ -60,7 +60,7 @@ static void moments_fill(const void *subject, int row, double *m)
 		double *k = m + FIRST_INPUT + PER_INPUT * j;
 		k[NOISE_PRODUCT] = bc - m[NOISE_AB];
 		k[INPUT_CORRECTED + PRODUCT] -= k[NOISE_PRODUCT];
-		// the variance of the difference c - a, signal by signal: exactly 0 for an input without effect
+		// noise variance of the difference c - a: exactly 0 for an input without effect
 		k[INPUT_CORRECTED + SQUARE] -= 0.5 * (aa + cc - 2.0 * ac);
 		all += cc;
 	}
@@ -75,7 +75,7 @@ static double ratio(double numerator, double variance, double variance_floor)
 
 /* Mean of all samples.
  *
- * Given    m, input  as outputs_moments() has them */
+ * Given    m, input  as from outputs_moments() */
 static double mean_of_all(const double *m, const double *input, int n_inputs)
 {
 	double sum = (n_inputs + 1) * m[A] + m[B];
@@ -116,11 +116,11 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
 	                               BLOCKS * n_inputs + SINGLES);
 }
 
-/* Pick-freeze indices raw and corrected for the noise of few signals, and the shares of the signals.
+/* Pick-freeze indices, raw and corrected for the noise of few signals, and the indices of the signals.
  *
  * Given    rows       -      outputs and their noise
  *          resampling -      of the rows
- * Returns  result     -      each with its 95 % interval; corrected ones and shares are NAN for one signal
+ * Returns  result     -      with 95 % intervals; corrected and signal indices are NAN for one signal
  * Memory   scratch    (pound_noise_correction_scratch)
  *
  *   raw         S_j = mean((b - mu) (c - a)) / v                  T_j = mean((a - c)^2) / (2 w)
@@ -129,12 +129,12 @@ size_t pound_noise_correction_scratch(const struct pound_sample_values *shape)
  *   signals     N = R mean(noise_pp):  T_w(1) = N / (w' + N),  T_w(R) = (N / R) / w,
  *               S_w(1) = R mean(noise_AB) / (w' + N),  S_jw = R mean(noise_BC - noise_AB) / (w' + N)
  *
- * T_w(1) is the total index of the signal as an input of its own in single runs, S_w(1) its first-order index, S_jw the
- * second-order index of signal and input j; the last two are 0 by construction when samples do not share signals.
- * T_w(R) is the share of randomness left in the means used here.
+ * T_w(1) is the total index of the signal as an additional input in single runs, S_w(1) its first-order index, S_jw the
+ * second-order index of signal and input j; S_w(1) and S_jw are 0 by construction if samples do not share signals.
+ * T_w(R) is the variance fraction of the randomness that remains in the means over R signals.
  *
- * Source   within-row covariances: valid_rows.c; of outputs that are plain means they are the U-statistics over pairs of different
- *          signals
+ * Source   within-row covariances: valid_rows.c; for outputs that are plain means they are the U-statistics over pairs of
+ *          different signals
  * Test     unit_noise_correction: the_golden_row_set_is_met
  */
 void pound_noise_correction_estimates(const struct pound_rows *rows, struct pound_resampling resampling,

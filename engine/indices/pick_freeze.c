@@ -1,10 +1,10 @@
 /* pick_freeze.c - estimators of first-order and total indices by name, each a function of means over the rows.
  *
- * In the formulas a, b, c, e are the outputs of a row at A, B, A with column j from B, and B with column j from A, centred
- * by the grand mean of all rows (so that cancellation costs nothing); a capital is a mean over rows; mu = (A + B) / 2;
- * v = mean((a^2 + b^2) / 2) - mu^2; w is the variance over the samples A, B, C of all rows.  From every product of two
- * outputs the covariance of their noise is taken off if it is given, which makes of any of them an estimator of the
- * indices for infinitely many signals.
+ * In the formulas a, b, c, e are the outputs of a row at A, B, A with column j from B, and B with column j from A, centered
+ * by the grand mean of all rows (against cancellation); a capital is a mean over rows; mu = (A + B) / 2;
+ * v = mean((a^2 + b^2) / 2) - mu^2; w is the variance over the samples A, B, C of all rows.  If given, the covariance of
+ * the noise of two outputs is subtracted from their product, so that every formula estimates the indices for
+ * infinitely many signals.
  *
  * A value is NAN where its variance is not above variance_floor.  Nothing is clipped to [0, 1]. */
 #include "engine/indices/indices.h"
@@ -16,7 +16,7 @@ static double ratio(double numerator, double variance, double variance_floor)
 	return variance > variance_floor ? numerator / variance : NAN;
 }
 
-/* The product of two outputs of a row without what their noise adds. */
+/* The product of two outputs of a row, corrected for noise. */
 static double product(const struct pound_outputs *row, int p, int q)
 {
 	return row->y[p] * row->y[q] - (row->noise ? row->noise[p * row->n_samples + q] : 0.0);
@@ -29,7 +29,7 @@ static int lean_count(int n_inputs)
 	return LEAN_FIRST + LEAN_STEP * n_inputs;
 }
 
-/* What Saltelli's and Jansen's formulas need: differences, so that an input without effect adds exact zeros. */
+/* Moments for Saltelli's and Jansen's formulas: differences, so that an input without effect adds exact zeros. */
 static void lean_moments(const struct pound_outputs *row, double *m)
 {
 	const int d = row->n_inputs, n = row->n_samples;
@@ -54,12 +54,12 @@ static void lean_moments(const struct pound_outputs *row, double *m)
 	m[LEAN_ALL] = all / (d + 2);
 }
 
-/* First-order index by Saltelli's formula, centred, and total index by Jansen's.
+/* First-order index by Saltelli's formula, centered, and total index by Jansen's.
  *
  *   S_j = mean((b - mu) (c - a)) / v          T_j = mean((a - c)^2) / (2 w)
  *
- * The total is divided by the variance over all samples, not over A and B only: over five test functions its
- * error is 2-9 % smaller (n = 1000, Latin hypercube), and the runs are there.
+ * The total is divided by the variance over all samples, not over A and B only: for five test functions this
+ * reduces its error by 2-9 % (n = 1000, Latin hypercube) at no extra runs.
  *
  * Source   Saltelli, Annoni, Azzini, Campolongo, Ratto, Tarantola 2010, Comput. Phys. Commun. 181, 259-270,
  *          table 2 (b) and (f); Jansen 1999, Comput. Phys. Commun. 117, 35-43
@@ -105,7 +105,7 @@ static void mixed_moments(const struct pound_outputs *row, int j, double *k)
 	k[C] = row->y[c], k[CC] = product(row, c, c), k[AC] = product(row, 0, c), k[BC] = product(row, 1, c);
 }
 
-/* All means and products that any formula over the pairs (a, b), (a, c), (b, c) can need. */
+/* All means and products for formulas in the pairs (a, b), (a, c), (b, c). */
 static void full_moments(const struct pound_outputs *row, double *m)
 {
 	shared_moments(row, m);
@@ -113,7 +113,7 @@ static void full_moments(const struct pound_outputs *row, double *m)
 		mixed_moments(row, j, m + SHARED + FULL_STEP * j);
 }
 
-/* The same with the sample B with a column from A. */
+/* The same plus the sample B with column j from A. */
 static void double_moments(const struct pound_outputs *row, double *m)
 {
 	const unsigned all = pound_inputs_all(row->n_inputs);
@@ -204,7 +204,7 @@ static void sobol_2007(const double *m, int n_inputs, double variance_floor, dou
 	}
 }
 
-/* Both indices from products alone: with the mean of a b and the squared mean in place of the product of means.
+/* Both indices from products: the mean of a b (S_j) and the squared mean (T_j) in place of the product of means.
  *
  *   S_j = (mean(b c) - mean(a b)) / v          T_j = 1 - (mean(a c) - mu^2) / v
  *
@@ -221,7 +221,7 @@ static void saltelli_2002(const double *m, int n_inputs, double variance_floor, 
 	}
 }
 
-/* Both indices from the four samples A, B, C, E, of which any may stand for any other.
+/* Both indices from the four samples A, B, C, E, in a formula symmetric in them.
  *
  *   S_j = 2 mean((e - b) (a - c)) / V          T_j = mean((b - e)^2 + (a - c)^2) / V          V = mean((a - b)^2 + (e - c)^2)
  *

@@ -32,14 +32,14 @@ static void subject_values(const void *given, const double *mean, double *value)
 	s->estimator->indices(mean, s->rows->n_inputs, s->rows->variance_floor, value);
 }
 
-/* Mean, variance and noise share of the outputs; says whether there are indices to estimate.
+/* Mean, variance and noise share of the outputs; returns whether there are indices to estimate.
  *
  * Given    rows      -      outputs and their noise
  * Returns  indices   -      mean, variance, noise share
  *          value     -      the outputs vary by more than rounding
  *
- * The variance is that of A and B; the noise share, for less scatter, that of all samples: mean variance of an output
- * over draws of its signals, over the variance of the outputs.
+ * The variance is taken over A and B; the noise share, for less scatter, over all samples: mean variance of an output
+ * over draws of its signals, divided by the variance of the outputs.
  *
  * Test     unit_plain_indices: the_noise_share_is_that_of_the_signals_mean
  */
@@ -73,7 +73,7 @@ size_t pound_plain_estimates_scratch(const struct pound_sample_values *shape,
 
 /* First-order and total indices by an estimator, with 95 % intervals.
  *
- * Given    rows       -      outputs and their noise; of the estimator's order at least
+ * Given    rows       -      outputs and their noise; a design of the estimator's order at least
  *          noise      -      kept or removed
  *          resampling -      of the rows
  * Returns  estimates  (2 x n_inputs)                   first, then total
@@ -104,11 +104,11 @@ size_t pound_plain_scratch(const struct pound_sample_values *shape)
  *
  * Given    values    (n_rows x n_samples x n_signals)         of each run; n_rows <= 2^20
  *          resampling -                                      of the rows
- * Returns  value     rows dropped: one of their runs has no output
+ * Returns  value     number of failed rows: a run has no output
  *          indices   mean, variance (of A and B, divided by their number), noise share, raw indices (n_inputs)
  * Memory   scratch   (pound_plain_scratch)
  *
- * A constant output (its deviation within the rounding of the ratio of means) has undefined indices: NAN.
+ * A constant output (its deviation is within rounding of the ratio of means) has undefined indices: NAN.
  *
  * Source   pick_freeze.c, bootstrap.c
  * Test     unit_plain_indices

@@ -1,19 +1,19 @@
-/* signal_split.c - from a pilot of few rows with six signals each: what the variance of an index from n rows of R signals is made
- * of.
+/* signal_split.c - variance components of an index from n rows of R signals, estimated from a pilot of few rows with six signals
+ * each.
  *
- * 1. Indices are quotients of means of quadratic forms of a row's outputs, of which the noise of R signals is taken off: these are
- *    U-statistics over pairs of different signals.  Their variance, for any law of the signals, is
+ * 1. Indices are quotients of means of quadratic forms of a row's outputs, corrected for the noise of R signals: these forms are
+ *    U-statistics over pairs of different signals.  Their variance, for any distribution of the signals, is
  *
  *      (rows + signals / R + pairs / (R (R - 1))) / n
  *
- *    rows: scatter of the rows' means over all signals;  signals: 4 times the part of one signal;  pairs: 2 times that of two
- *    together.  (With D = c - a of T: rows = Var(delta^2 / 2), signals = E(delta^2 eta^2), pairs = E(eta^4) / 2, where delta is
- *    the mean and eta^2 the variance of D given the row.)
- * 2. The interval of every index of the pilot is found with its pairs, its triples and all six of its signals: three equations.
- *    Parts less than 0 are 0; the rest is fitted by least squares of relative errors.
- * 3. A ratio of means of R signals without its bias by the jackknife still has one of order 1 / (R (R - 1)): R Y_R - (R - 1) Y_(R - 1) with
- *    E(Y_R) = Y + b / R + c / R^2 is Y - c / (R (R - 1)).  The mean of an index's form over all 15 pairs less that over all
- *    six shows it: of outputs that are plain means both are equal.
+ *    rows: variance of the rows' means over all signals;  signals: 4 times the variance of the first-order part in one signal;
+ *    pairs: 2 times the variance of the part in two signals.  (For T with D = c - a: rows = Var(delta^2 / 2), signals =
+ *    E(delta^2 eta^2), pairs = E(eta^4) / 2, where delta is the mean and eta^2 the variance of D given the row.)
+ * 2. The intervals of every index with pairs, triples and all six of the pilot's signals give three equations.  They are
+ *    solved by nonnegative least squares of relative errors.
+ * 3. The jackknife leaves a bias of order 1 / (R (R - 1)) in a ratio of means of R signals: with E(Y_R) = Y + b / R + c / R^2,
+ *    R Y_R - (R - 1) Y_(R - 1) is Y - c / (R (R - 1)).  It is estimated as the mean of an index's form over all 15 pairs less
+ *    the form of all six signals; for outputs that are plain means both are equal.
  *
  * Source   Hoeffding 1948, Ann. Math. Stat. 19, 293-325, variance of a U-statistic of degree 2 */
 #include "engine/indices/signal_split.h"
@@ -23,7 +23,7 @@
 
 enum { N = POUND_SPLIT_SIGNALS, PARTS = 3, SETS = 3 };
 
-/* The signals of a pilot in sets of one size each: that size, and how many there are. */
+/* Partitions of a pilot's signals into sets of equal size: the size and the number of sets. */
 static const struct {
 	int size, n;
 } sets[SETS] = {{2, 3}, {3, 2}, {6, 1}};
@@ -44,7 +44,7 @@ double pound_split_bias(const struct pound_split_parts *parts, int n_signals)
 	return parts->bias * pairs_of(n_signals);
 }
 
-/* The values of some signals alone.
+/* The values of selected signals.
  *
  * Returns  into    (rows x samples x n) numerators, then denominators
  */
@@ -64,9 +64,9 @@ static struct pound_sample_values chosen(const struct pound_sample_values *value
 	return part;
 }
 
-/* Adds what the corrected pick-freeze indices are quotients of, means over the rows: numerators of S1, then of ST, then the variance.
+/* Adds the row means whose quotients are the corrected pick-freeze indices: numerators of S1, then of ST, then the variance.
  *
- * Given    centre  -                     taken off all outputs: a mean of the same signals would add noise of its own
+ * Given    centre  -                     subtracted from all outputs: a mean over the same signals would add its own noise
  * Returns  form    (2 x n_inputs + 1)
  */
 static void forms_add(const struct pound_rows *rows, double centre, double weight, double *form)
@@ -88,7 +88,7 @@ static void forms_add(const struct pound_rows *rows, double centre, double weigh
 	}
 }
 
-/* Solves m x = b for the unknowns of a mask, by elimination of positive definite equations; false: some is less than 0. */
+/* Solves m x = b, positive definite, for the unknowns in the mask by elimination, others 0; false: an unknown is < 0. */
 static bool solved(const double m[PARTS][PARTS], const double b[PARTS], unsigned mask, double x[PARTS])
 {
 	double a[PARTS][PARTS + 1];
@@ -112,8 +112,8 @@ static bool solved(const double m[PARTS][PARTS], const double b[PARTS], unsigned
 	return positive;
 }
 
-/* Fits parts that are not less than 0 to the variances with sets of 2, 3 and 6 signals, by relative errors: of all choices of parts
- * that are not 0 the best feasible one. */
+/* Nonnegative least squares fit of the parts to the variances with sets of 2, 3 and 6 signals, by relative errors: the best
+ * feasible one of all choices of nonzero parts. */
 static void parts_fit(const double variance[SETS], struct pound_split_parts *parts)
 {
 	double m[PARTS][PARTS] = {{0}}, b[PARTS] = {0}, most = -1.0;
@@ -130,7 +130,7 @@ static void parts_fit(const double variance[SETS], struct pound_split_parts *par
 		double x[PARTS];
 		if (!solved(m, b, mask, x))
 			continue;
-		// of a least squares fit the sum of squares is that of the data less b x
+		// the residual sum of squares is the sum of squares of the data less b x
 		const double explained = b[0] * x[0] + b[1] * x[1] + b[2] * x[2];
 		if (explained > most) {
 			most = explained;
@@ -141,8 +141,8 @@ static void parts_fit(const double variance[SETS], struct pound_split_parts *par
 	}
 }
 
-/* Adds the mean over the sets of one size of the variances of all indices, times the rows; those of a quotient by the variance that
- * all signals show. */
+/* Adds, for sets of one size, the mean over the sets of the variance of all index numerators, times the number of rows; the
+ * caller divides by the squared variance estimated from all signals. */
 static void variances_add(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                           uint64_t seed, int k, double *scratch, double *variance)
 {
@@ -173,19 +173,19 @@ static void variances_add(const struct pound_sample_values *values, const struct
 	}
 }
 
-/* Doubles that pound_split_estimate works in. */
+/* Doubles of scratch of pound_split_estimate. */
 size_t pound_split_scratch(const struct pound_sample_values *shape)
 {
 	return 2 * (size_t)shape->n_rows * pound_values_samples(shape) * N +
 	       pound_index_columns_scratch(shape, NULL);
 }
 
-/* What the variances of all S1 and ST are made of.
+/* Variance components of all S1 and ST.
  *
  * Given    values    (n_rows x n_samples x 6)   of a pilot, 30 rows or more
- *          sampling  -                          its design; ratios and estimators are not looked at
+ *          sampling  -                          its design; ratios and estimators are ignored
  *          seed      -                          of the resamples
- * Returns  parts     (2 x n_inputs)             of every S1, then of every ST; NAN: the output has no variance without the noise
+ * Returns  parts     (2 x n_inputs)             of every S1, then of every ST; NAN: no variance is left after noise correction
  * Memory   scratch   (pound_split_scratch)
  *
  * Test     unit_signal_split
@@ -220,7 +220,7 @@ void pound_split_estimate(const struct pound_sample_values *values, const struct
 		if (!(v > floor) || !(of[0] > 0.0 && of[1] > 0.0 && of[2] > 0.0))
 			continue;
 		parts_fit(of, &parts[i]);
-		// over the larger variance, as that of few rows with two signals may be near 0
+		// over the larger variance: the variance of few rows with two signals may be near 0
 		parts[i].bias =
 		    (pairs[i] - all[i] / v * pairs[2 * d]) / fmax(v, pairs[2 * d]) / (pairs_of(2) - pairs_of(N));
 	}

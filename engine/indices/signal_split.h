@@ -1,4 +1,4 @@
-/* signal_split.h - how the variance of an index depends on how many signals each row has, from a pilot. */
+/* signal_split.h - variance of an index as a function of the number of signals per row, estimated from a pilot. */
 #ifndef SIGNAL_SPLIT_H
 #define SIGNAL_SPLIT_H
 
@@ -6,8 +6,8 @@
 
 enum { POUND_SPLIT_SIGNALS = 6 }; /* of a pilot: three pairs, two triples, all */
 
-/* Of an index estimated from n rows of R signals: variance (rows + signals / R + pairs / (R (R - 1))) / n, and bias
- * bias / (R (R - 1)), as an output is a ratio of means of few signals.  NAN: unknown. */
+/* An index estimated from n rows of R signals has the variance (rows + signals / R + pairs / (R (R - 1))) / n, and the bias
+ * bias / (R (R - 1)), because an output is a ratio of means over few signals.  NAN: unknown. */
 struct pound_split_parts {
 	double rows, signals, pairs, bias;
 };
@@ -16,7 +16,7 @@ double pound_split_variance(const struct pound_split_parts *parts, int n_signals
 double pound_split_bias(const struct pound_split_parts *parts, int n_signals);
 
 size_t pound_split_scratch(const struct pound_sample_values *shape); /* doubles */
-/* Of every S1 and then every ST  (2 x n_inputs). */
+/* For every S1 and then every ST  (2 x n_inputs). */
 void pound_split_estimate(const struct pound_sample_values *values, const struct pound_sampling *sampling,
                           uint64_t seed, double *scratch, struct pound_split_parts *parts);
 

@@ -1,24 +1,24 @@
-/* valid_rows.c - from the runs' values to the rows the statistics are about: one output for each sample, and how it would
- * scatter if other signals had been drawn. */
+/* valid_rows.c - from the runs' values to the valid rows: one output per sample, and its noise, the scatter over other draws
+ * of the signals. */
 #include "engine/indices/indices.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Ratio of means over the signals, its bias, and what each signal adds to its deviation.
+/* Ratio of means over the signals, its bias, and the contribution of each signal to its deviation.
  *
  * Given    numerator, denominator   (n_signals)
  * Returns  value       Y            mean numerator / mean denominator
- *          bias        -            of Y, by the jackknife: (R - 1) (mean of the ratios without one signal - Y); NAN: one signal
+ *          bias        -            of Y, by the jackknife: (R - 1) (mean of leave-one-out ratios - Y); NAN: one signal
  *          deviation   (n_signals)  residuals U_r - Y u_r over the mean of u, each over (1 - h_r)^1/2, h_r = u_r / sum of u, and
  *                                   times (1 - 1/R)^1/2
  *
- * Y lies near the signals that have much weight in it: their residuals are too small by (1 - h)^1/2.  Of responses with pounding
- * the noise would without that be found too small, and by the jackknife's pseudo-values, over 1 - h, too large: of two signals by
- * so much that total indices are off by a third.  With equal denominators all of these are one, and nothing is biased.
+ * Y is close to signals with much weight (leverage h): their residuals are too small by (1 - h)^1/2.  Without this factor
+ * the noise of responses with pounding would be underestimated; jackknife pseudo-values, over 1 - h, overestimate it: with two
+ * signals so much that total indices are off by a third.  With equal denominators all these agree, and nothing is biased.
  *
- * Source   model.md 5: a ratio of means, with the same signals above and below; Quenouille 1956, Biometrika 43, 353-360, for
- *          the jackknife; MacKinnon and White 1985, J. Econometrics 29, 305-325 (HC2), of the regression through 0 that Y is
+ * Source   model.md 5: a ratio of means, same signals in numerator and denominator; Quenouille 1956, Biometrika 43, 353-360, for
+ *          the jackknife; MacKinnon and White 1985, J. Econometrics 29, 305-325 (HC2): Y is a regression through 0
  * Test     unit_valid_rows: the_variance_of_a_ratio_of_means_is_that_of_its_residuals
  */
 static double ratio_of_means(const double *numerator, const double *denominator, int n_signals,
@@ -35,7 +35,7 @@ static double ratio_of_means(const double *numerator, const double *denominator,
 	for (int r = 0; r < n_signals; r++) {
 		const double residual = numerator[r] - y * denominator[r], rest = below - denominator[r];
 		sum += residual / rest;
-		// one of a sum of equal ones, to the last digit, and no product that could leave the range of doubles
+		// exactly 1 for equal denominators; the order of operations avoids overflow
 		deviation[r] =
 		    residual * n_signals / below * (even ? 1.0 : sqrt(others / n_signals * (below / rest)));
 	}
@@ -43,7 +43,7 @@ static double ratio_of_means(const double *numerator, const double *denominator,
 	return isfinite(below) ? y : NAN;
 }
 
-/* Brings deviations to the scale on which products of them add up to covariances of means over n_signals. */
+/* Scales deviations so that their products add up to covariances of means over n_signals. */
 static void deviations_scale(double *deviation, int n_signals)
 {
 	const double scale = sqrt(1.0 / ((n_signals - 1.0) * n_signals));
@@ -51,7 +51,7 @@ static void deviations_scale(double *deviation, int n_signals)
 		deviation[r] = n_signals > 1 ? deviation[r] * scale : NAN;
 }
 
-/* Covariances of a row's outputs over draws of their noise, all NAN where that is not known.
+/* Covariances of a row's outputs over draws of their noise; all NAN if unknown.
  *
  * Returns  noise    (n_samples x n_samples)
  *
@@ -71,9 +71,9 @@ void pound_rows_noise(const struct pound_rows *rows, int row, double *noise)
 		}
 }
 
-/* Variance of outputs of all samples of the plain protocol.
+/* Variance of the outputs over all samples of the plain protocol.
  *
- * Given    y         (n_rows x n_samples)     those of the rows, without their bias or as they come out
+ * Given    y         (n_rows x n_samples)     rows->y, bias-corrected, or rows->plain
  *
  * Test     unit_plain_indices: the_noise_share_is_that_of_the_signals_mean
  */
@@ -91,7 +91,7 @@ double pound_rows_variance(const struct pound_rows *rows, const double *y)
 }
 
 /* Given    input     -       of the rows
- * Returns  value     -       the values of a discrete input, up to POUND_CURVE; 0: of any other
+ * Returns  value     -       the number of values of a discrete input, up to POUND_CURVE; 0: any other
  *
  * Test     unit_valid_rows: an_input_of_few_values_has_as_many_levels
  */
@@ -100,7 +100,7 @@ int pound_rows_levels(const struct pound_rows *rows, int input)
 	return rows->inputs ? pound_conditional_levels(&rows->inputs[input].distribution) : 0;
 }
 
-/* Takes the mean of A and B off all outputs.  The first output goes first, so that equal ones become exact zeros.
+/* Subtracts the mean over A and B from all outputs.  The first output is the origin of the sums, so that equal outputs become 0.
  *
  * Returns  value  the mean
  */
@@ -145,7 +145,7 @@ size_t pound_rows_scratch(const struct pound_sample_values *shape)
 	return samples * (2 + shape->n_signals) + shape->n_rows;
 }
 
-/* One row's outputs, with their deviations, at the end of the rows; says whether it has them all. */
+/* Writes one row's outputs and deviations behind the last valid row; returns whether all are finite. */
 static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *values, int row,
                      double *largest, double *bias)
 {
@@ -163,7 +163,7 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 			plain[p] = ratio_of_means(values->numerator + sample * n_signals,
 			                          values->denominator + sample * n_signals, n_signals, deviation, &one);
 			deviations_scale(deviation, n_signals);
-			// a mean over given records is what is wanted, without bias or noise
+			// given records: the mean over them is the output itself, without bias or noise
 			for (int r = 0; r < n_signals && values->same_signals; r++)
 				deviation[r] = one = NAN;
 		}
@@ -178,9 +178,9 @@ static bool row_fill(struct pound_rows *rows, const struct pound_sample_values *
 	return true;
 }
 
-/* The groups that rows fall into, no more of them than there are.
+/* The groups of the rows, at most as many as the rows fill.
  *
- * Given    row       (those that count)    number in the design; held by what is returned
+ * Given    row       (valid rows)    number in the design; the returned struct points to it
  */
 struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values, const int64_t *row)
 {
@@ -190,14 +190,14 @@ struct pound_scatter pound_rows_scatter(const struct pound_sample_values *values
 	return scatter;
 }
 
-/* The rows that have an output at every sample.
+/* The valid rows: all samples have an output.
  *
  * Given    values      (n_rows x n_samples x n_signals)   numerators and denominators; a known variance: one signal
- * Returns  rows        -                                  outputs, centred, and their noise
+ * Returns  rows        -                                  outputs, centered, and their noise
  * Memory   scratch     (pound_rows_scratch)               held by rows
  *
- * A row with a failed run, or a denominator without a mean, is left out whole, as is one of which no ratio of all signals but
- * one is known.
+ * A row with a failed run is left out as a whole, as is a row with an undefined ratio of means or an undefined
+ * leave-one-out ratio.
  *
  * Test     unit_valid_rows
  */
@@ -225,7 +225,7 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	rows->mean = centre(rows, rows->y);
 	rows->plain_mean = centre(rows, rows->plain);
 	rows->ratio_bias = bias / rows->n_rows;
-	// a sum of n_signals numbers and a quotient round to no more than this
+	// bound on the rounding error of a sum of n_signals numbers and a quotient
 	double rounding = (values->n_signals + 2) * DBL_EPSILON * largest;
 	rows->variance_floor = rounding * rounding;
 }

@@ -1,4 +1,4 @@
-/* blocks.c - a study's items cut into blocks, and where the values of a run lie in them. */
+/* blocks.c - cuts a study's items into blocks, and locates the values of a run in them. */
 #include "engine/run/blocks.h"
 
 #include <math.h>
@@ -6,11 +6,11 @@
 #include "engine/design/design.h"
 
 enum {
-	BLOCK_RUNS = 768,        /* pounding runs of a block, about: enough to keep all lanes filled, soon done */
-	BLOCK_FLOORS = 96,       /* of them whose floors are followed, which takes longer */
-	BLOCK_SPECTRA = 8,       /* of them with whole spectra, which take longer still */
-	BLOCK_SHORT = 4,         /* floors of a row from which on its runs take longer */
-	BLOCK_SAMPLES = 1 << 21, /* of its ground motions at most, unless one item has more: 16 MiB */
+	BLOCK_RUNS = 768,  /* approximate pounding runs of a block: enough to fill all lanes, but soon done */
+	BLOCK_FLOORS = 96, /* the same with floor oscillators, which take longer */
+	BLOCK_SPECTRA = 8, /* the same with whole spectra, which take longer still */
+	BLOCK_SHORT = 4,   /* floors of a row above which its runs take longer */
+	BLOCK_SAMPLES = 1 << 21, /* of a block's ground motions at most, unless one item has more: 16 MiB */
 };
 
 /* Items of all rows. */
@@ -33,7 +33,7 @@ static int block_runs(const struct pound_study *study)
 	return study->kind == POUND_KIND_FLOOR_SPECTRUM ? BLOCK_SPECTRA : BLOCK_FLOORS;
 }
 
-// sums over the samples of a block; storeys, contacts and memory are those of one scene
+// sums over the samples of a block; storeys, contacts and memory are maxima, as they hold one scene
 static void row_size_add(struct pound_row_size *block, const struct pound_row_size *item, int times)
 {
 	block->tasks += times * item->tasks;
@@ -73,12 +73,12 @@ static void size_add(struct pound_request_size *block, struct pound_request_size
 
 /* Cuts the items into blocks.
  *
- * Given    campaign    -              what is run elsewhere is one block
- * Returns  value       -              blocks
- *          first       (blocks + 1)   the first item of each, and the end; NULL: not wanted
- *          largest     -              at least as large as before, and as each block
+ * Given    campaign    -              a study run elsewhere is one block
+ * Returns  value       -              number of blocks
+ *          first       (blocks + 1)   the first item of each, and the end; NULL: not requested
+ *          largest     -              raised to the largest block
  *
- * A block holds no more than lanes need; it ends where the design is looked at, and with a trial, as it has one solver.
+ * A block ends when it is full, at each look of a growing design, and with a trial, because it has one solver.
  *
  * Test     unit_growth: a_block_ends_where_the_design_is_looked_at
  */
@@ -117,9 +117,9 @@ int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct poun
 	return n_blocks;
 }
 
-/* How many blocks there are when all items are of one size.
+/* Number of blocks if all items have the same size.
  *
- * Returns  largest   with its checks
+ * Returns  largest   largest block, with its checks
  * Test     service_estimates: the_memory_of_a_study_is_estimated
  */
 int pound_blocks_alike(const struct pound_cells *campaign, struct pound_request_size item,
@@ -143,7 +143,7 @@ static size_t item_doubles(const struct pound_blocks *layout)
 	       (size_t)layout->n_measures;
 }
 
-/* How many items before this one are kept, checks counted as items. */
+/* Number of items stored before this one, counting checks as items. */
 static size_t kept_before(const struct pound_blocks *layout, int item)
 {
 	return (size_t)item + (size_t)pound_cells_checks(layout->campaign, item);
@@ -156,7 +156,7 @@ size_t pound_blocks_doubles(const struct pound_blocks *layout)
 	       (size_t)layout->n_blocks * (size_t)layout->n_counts;
 }
 
-/* The block that holds an item; of the end the number of blocks. */
+/* The block that holds an item; for the end of the items the number of blocks. */
 int pound_blocks_block_of(const struct pound_blocks *layout, int item)
 {
 	int low = 0, high = layout->n_blocks + 1;
@@ -170,7 +170,7 @@ int pound_blocks_block_of(const struct pound_blocks *layout, int item)
 	return low;
 }
 
-/* Pounding runs asked in a block. */
+/* Pounding runs requested in a block. */
 int64_t pound_blocks_block_runs(const struct pound_blocks *layout, int block)
 {
 	return (int64_t)(layout->first[block + 1] - layout->first[block]) * layout->campaign->n_cells *
@@ -183,14 +183,14 @@ size_t pound_blocks_block_doubles(const struct pound_blocks *layout, int block)
 	return n * item_doubles(layout) + (size_t)layout->n_counts;
 }
 
-/* Where a block's values begin. */
+/* The start of a block's values. */
 double *pound_blocks_block(const struct pound_blocks *layout, int block)
 {
 	return layout->values + kept_before(layout, layout->first[block]) * item_doubles(layout) +
 	       (size_t)block * (size_t)layout->n_counts;
 }
 
-/* Where its counts of work begin. */
+/* The start of its counts of work. */
 const double *pound_blocks_counts(const struct pound_blocks *layout, int block)
 {
 	return pound_blocks_block(layout, block) + pound_blocks_block_doubles(layout, block) - layout->n_counts;
@@ -210,7 +210,7 @@ double *pound_blocks_run(const struct pound_blocks *layout, int item, int cell, 
 	return place_values(layout, block, item - layout->first[block], cell, sample);
 }
 
-/* The measures of the run that checks it. */
+/* The measures of the check of a run. */
 const double *pound_blocks_check(const struct pound_blocks *layout, int item, int cell, int sample)
 {
 	const struct pound_cells *c = layout->campaign;

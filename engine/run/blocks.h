@@ -1,7 +1,7 @@
-/* blocks.h - where the values of a study's runs lie.
+/* blocks.h - memory layout of the values of a study's runs.
  *
- * Items in order are cut into blocks.  A block holds the measures of its items' runs, by item, cell and sample, then
- * those of its checks in the same order, then counts of its work. */
+ * The sequence of items is cut into blocks.  A block holds the measures of its items' runs, by item, cell and sample, then
+ * the measures of its checks in the same order, then counts of its work. */
 #ifndef BLOCKS_H
 #define BLOCKS_H
 
@@ -9,7 +9,7 @@
 
 struct pound_blocks {
 	const struct pound_cells *campaign;
-	int n_measures; /* doubles kept of a run */
+	int n_measures; /* doubles kept per run */
 	int n_counts;   /* at the end of a block */
 	int n_blocks;
 	int *first;     /* items: block b is first[b] .. first[b + 1] - 1  (n_blocks + 1) */
@@ -17,9 +17,9 @@ struct pound_blocks {
 };
 
 int pound_blocks_items(const struct pound_cells *campaign);
-/* How many blocks; with first NULL they are only counted, and the largest found. */
+/* Returns the number of blocks; first NULL: only counts the blocks and finds the largest size. */
 int pound_blocks_cut(const struct pound_cells *campaign, int *first, struct pound_request_size *largest);
-/* The same without a look at any item: when each is of that size. */
+/* The same if every item has the given size. */
 int pound_blocks_alike(const struct pound_cells *campaign, struct pound_request_size item,
                        struct pound_request_size *largest);
 size_t pound_blocks_doubles(const struct pound_blocks *layout);

@@ -19,16 +19,16 @@ double pound_cells_sweep(const struct pound_cells *campaign, int cell, int sweep
 	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
 }
 
-/* How many items before this one are checked. */
+/* The number of checked items before this one. */
 int pound_cells_checks(const struct pound_cells *campaign, int item)
 {
 	int every = campaign->check_every;
 	return every ? (item + every - 1) / every : 0;
 }
 
-/* The scene of one sample: the study's, with the cell's sweep values and the sample's inputs put in.
+/* The scene of one sample: the study's scene with the cell's sweep values and the sample's inputs.
  *
- * Given    row_memory   (pound_row_bytes)   for its buildings and contacts; NULL: these are left as the study has them
+ * Given    row_memory   (pound_row_bytes)   for its own buildings and contacts; NULL: the study's, not varied
  */
 struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cell, int row, int sample,
                                      void *row_memory)
@@ -48,7 +48,7 @@ struct pound_scene pound_cells_scene(const struct pound_cells *campaign, int cel
 	return scene;
 }
 
-/* The record that a signal of a scene with a suite is. */
+/* The record of a signal of a scene with a suite. */
 struct pound_suite_signal pound_cells_record(const struct pound_cells *campaign,
                                              const struct pound_scene *scene, const struct pound_place *place)
 {
@@ -64,7 +64,7 @@ struct pound_excitation pound_cells_excitation(const struct pound_cells *campaig
 	return e->n_records ? pound_suite_excitation(e, pound_cells_record(campaign, scene, place)) : *e;
 }
 
-/* The random numbers of a ground motion: samples of a row share theirs, or have their own. */
+/* The random stream of a ground motion: common to the samples of a row, or one for each sample. */
 struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int row, int sample, int signal)
 {
 	const struct pound_design *design = &campaign->study->design;
@@ -75,19 +75,19 @@ struct pound_stream pound_cells_noise(const struct pound_cells *campaign, int ro
 	                             .signal = (uint32_t)signal};
 }
 
-/* Numerators of an output in a cell; there are as many denominators, or variances of outputs computed elsewhere. */
+/* Number of numerators of an output in a cell; also of denominators, or of variances of outputs computed elsewhere. */
 size_t pound_cells_values_size(const struct pound_cells *c, int n_rows)
 {
 	return (size_t)n_rows * (size_t)c->n_samples * (size_t)c->n_signals;
 }
 
-/* Whether the outputs are means that were computed elsewhere, with their variances, and not ratios of values of signals. */
+/* Whether the outputs are means computed elsewhere, with variances, instead of ratios of means over signals. */
 bool pound_cells_means(const struct pound_cells *c)
 {
 	return c->study->elsewhere && !c->study->replicates;
 }
 
-/* The values of an output in the first rows of a cell, from numerators and then denominators; NULL: their shape alone.
+/* The values of an output in the first rows of a cell; columns: numerators, then denominators; NULL: only the shape.
  *
  * Test     unit_index_columns: a_study_s_result_holds_what_its_samples_give
  */

@@ -1,15 +1,15 @@
-/* demand.c - the search for the yield displacement that gives a target demand, one response after the other.
+/* demand.c - search for the yield displacement that gives a target demand, one response per step.
  *
- * The demand falls to 0 as the yield displacement grows, and takes arbitrarily large values as it decreases; on logarithmic scales its slope is -1
- * where the body does not yield.  It is continuous where the law's force depends continuously on the history: the search
- * reports a jump otherwise. */
+ * The demand falls to 0 as the yield displacement grows and becomes arbitrarily large as it decreases; on logarithmic scales
+ * its slope is -1 where the body does not yield.  It is continuous where the law's force depends continuously on the history;
+ * elsewhere the search may report a jump. */
 #include "engine/run/demand.h"
 
 #include <math.h>
 
 #include "engine/numeric/elementary.h"
 
-/* Relative difference from the target at which a search ends. */
+/* Relative tolerance of the target demand. */
 static const double REACHED = 1e-6;
 
 bool pound_demand_reached(const struct pound_demand *demand)
@@ -19,7 +19,7 @@ bool pound_demand_reached(const struct pound_demand *demand)
 
 /* Takes a response.
  *
- * Given    response  its number, to be remembered
+ * Given    response  its number, stored if it is the nearest
  *          share     its demand over the target, > 0
  * Returns  demand    the nearest response so far
  * Source   model.md 3 of the project's design pages

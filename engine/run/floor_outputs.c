@@ -1,10 +1,10 @@
-/* floor_outputs.c - floor spectra as what a study asks for.
+/* floor_outputs.c - floor spectra as outputs of a study.
  *
- * 1. After the marches of a block each of its floors is followed once more, under the tasks that the request found, and its
- *    spectra are put beside the other measures of the run; equal floors are followed once.
- * 2. A study of spectra reduces them to mean and percentiles over the signals; a sensitivity study has an output for each
+ * 1. After the marches of a block the tasks of its floors are run again with floor oscillators, and the spectra are stored with
+ *    the other measures of the run; equal floors are run once.
+ * 2. A floor spectrum study reduces the spectra to mean and percentiles over the signals; a sensitivity study has an output per
  *    frequency, and its correlation with the largest impulse.
- * 3. A check's floor has half the sample step and oscillators of half the longest step. */
+ * 3. A check uses half the sample step and half the longest oscillator step. */
 #include "engine/run/floor_outputs.h"
 
 #include <assert.h>
@@ -22,19 +22,19 @@ static const double PI = 3.14159265358979323846;
 /* Longest step of an oscillator [rad], for results and for checks. */
 static const double RADIANS = 1.5, RADIANS_CHECK = 0.75;
 
-/* beside the spectra of a signal */
+/* measures of a signal after its spectra */
 enum { IMPULSE, PULSES, MEASURES };
 
-/* what is known of the floor of a task */
+/* state of the floor of a task */
 struct followed {
-	int ask; /* that its ordinates were found for, plus one; 0: none yet */
+	int ask; /* number of the ask with its ordinates, plus one; 0: none yet */
 	enum pound_status status;
 };
 
 struct pound_ordinates {
 	struct pound_floor *floor;
-	int n;       /* frequencies */
-	double *psa; /* of every floor that is followed at once  (POUND_FLOORS x POUND_DRIVES x n) */
+	int n;                     /* frequencies */
+	double *psa;               /* of every floor of a batch  (POUND_FLOORS x POUND_DRIVES x n) */
 	struct followed *followed; /* of each task  (n_tasks) */
 	int n_tasks;
 };
@@ -44,7 +44,7 @@ static bool has_spectra(const struct pound_study *study)
 	return study->kind == POUND_KIND_FLOOR_SPECTRUM;
 }
 
-/* A run of a study of spectra has all of them; one of a sensitivity study the impulse beside its ordinates. */
+/* A run of a floor spectrum study stores all spectra; a run of a sensitivity study the impulse, ordinates being outputs. */
 int pound_ordinate_measures(const struct pound_study *study)
 {
 	if (study->spectrum.n == 0)
@@ -52,7 +52,7 @@ int pound_ordinate_measures(const struct pound_study *study)
 	return has_spectra(study) ? POUND_N_SPECTRA * study->spectrum.n + MEASURES : 1;
 }
 
-/* ---- work space ---- */
+/* ---- scratch memory ---- */
 
 static size_t aligned(size_t bytes)
 {
@@ -105,7 +105,7 @@ static void dirac_fill(const struct pound_spectrum *spectrum, const struct pound
 			    rows[row](dirac, 2 * PI * pound_spectrum_frequency(spectrum, k), spectrum->damping_ratio);
 }
 
-/* Floors that are followed at once, for some asks. */
+/* A batch of floors that are run together, for several asks. */
 struct floor_batch {
 	int n_floors, n_asks;
 	struct pound_floor_ask asks[POUND_FLOORS];       /* (n_floors) */
@@ -117,13 +117,13 @@ struct floor_batch {
 	} of[POUND_FLOORS]; /* (n_asks) */
 };
 
-/* Another floor: with pounding, or without. */
+/* Adds a floor to the batch, with or without pounding. */
 static void batch_add(struct floor_batch *b, struct pound_ordinates *o, struct pound_floor_ask ask,
                       const struct pound_request_floor *request, bool pounding)
 {
 	ask.task = pounding ? request->pounding : request->free;
 	ask.chain = pounding ? request->row.pounding : request->row.free;
-	ask.n_drives = pounding ? ask.n_drives : 1; // without a contact nothing pushes
+	ask.n_drives = pounding ? ask.n_drives : 1; // without contact there is no force
 	struct pound_floor_answer *answer = &b->answers[b->n_floors];
 	*answer = (struct pound_floor_answer){0};
 	for (int d = 0; d < POUND_DRIVES; d++)
@@ -133,7 +133,7 @@ static void batch_add(struct floor_batch *b, struct pound_ordinates *o, struct p
 
 /* All spectra of one signal.
  *
- * Given    answers  of the floor without pounding, then with it where it touches
+ * Given    answers  of the floor without pounding, then with pounding if contact occurs
  */
 static void spectra_fill(const struct pound_study *study, const struct pound_request_floor *request,
                          const struct pound_floor_answer *answers, const atomic_bool *stop, double *values)
@@ -166,7 +166,7 @@ static void ordinates_fill(const struct pound_study *study, const struct pound_r
 	}
 }
 
-/* Follows the floors of some asks, and fills in what was asked of them. */
+/* Runs the floors of a batch, and fills in the spectra or ordinates of its asks. */
 static void batch_run(struct floor_batch *b, struct pound_ordinates *o, const struct pound_study *study,
                       const atomic_bool *stop)
 {
@@ -193,8 +193,8 @@ static int measures_of(const struct pound_study *study)
 	return (has_spectra(study) ? 0 : 2 * study->n_outputs) + pound_ordinate_measures(study);
 }
 
-/* Gives asks of one floor the ordinates of the first of them; a run whose floor could not be followed has failed, also where
- * another ask followed that floor. */
+/* Copies ordinates to asks that share a floor with an earlier ask; if the run of the floor failed, all asks with this floor
+ * have failed. */
 static void ordinates_share(const struct pound_ordinates *o, const struct pound_study *study,
                             const struct pound_request *request, double *values, struct pound_work *work)
 {
@@ -215,13 +215,13 @@ static void ordinates_share(const struct pound_ordinates *o, const struct pound_
 	}
 }
 
-/* Adds to a block that the request has run what spectra its study asks for.
+/* Adds the requested spectra to a block that the request has run.
  *
  * Given    request     its asks in the order of their values
- *          values   (asks x measures)  of a failed run the last is NAN
- *          stop     looked at throughout
- * Returns  values   with spectra or ordinates; all NAN where a floor could not be followed
- *          work     floors asked and followed, and runs failed for want of one; those of checks left out
+ *          values   (asks x measures)  the last is NAN for a failed run
+ *          stop     checked throughout
+ * Returns  values   with spectra or ordinates; all NAN if the run of a floor failed
+ *          work     floors requested and run, and runs that failed in a floor; without checks
  * Status   POUND_STOPPED  stop was set
  */
 enum pound_status pound_ordinate_block(struct pound_ordinates *o, const struct pound_study *study,
@@ -283,7 +283,7 @@ size_t pound_ordinate_scratch(const struct pound_study *study, int n_rows)
 	return 5 * (size_t)n_rows + pound_bootstrap_scratch(n_rows, 5, 1);
 }
 
-/* A measure of all signals that have it, sorted; returns how many. */
+/* The finite values of a measure over the signals, sorted; returns how many. */
 static int measure_sort(const struct pound_run *run, int measure, double *sorted)
 {
 	int n = 0;
@@ -296,7 +296,7 @@ static int measure_sort(const struct pound_run *run, int measure, double *sorted
 	return n;
 }
 
-/* Largest relative difference of a measure between runs and their checks; NAN: there are none. */
+/* Largest relative difference of a measure between runs and their checks; NAN: no checks. */
 static double measure_error(const struct pound_run *run, int measure)
 {
 	double largest = NAN;
@@ -317,7 +317,7 @@ static double mean_of(const double *value, int n)
 	return n ? sum / n : NAN;
 }
 
-/* First frequency of the body that the floor is of [Hz]. */
+/* First frequency of the floor's body or building [Hz]. */
 static double body_frequency(const struct pound_study *study)
 {
 	struct pound_storeys storeys;
@@ -327,10 +327,10 @@ static double body_frequency(const struct pound_study *study)
 	return storeys.frequency / (2 * PI);
 }
 
-/* Mean, 16 and 84 % over the signals of every spectrum, and what the checks say.
+/* Mean, 16 % and 84 % quantiles of every spectrum over the signals, and errors from the checks.
  *
  * Given    scratch  (pound_ordinate_scratch)
- * Returns  result   quantiles linear between the order statistics
+ * Returns  result   quantiles linear between order statistics
  * Test     unit_floor_outputs
  */
 void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct pound_floor_result *result)
@@ -357,9 +357,9 @@ void pound_ordinate_reduce(const struct pound_run *run, double *scratch, struct 
 	result->pulses_mean = mean_of(scratch, known);
 }
 
-/* ---- beside the impulse ---- */
+/* ---- correlation with the impulse ---- */
 
-/* x: ordinate, y: impulse, of samples A and B, both about their means  (n_rows x 2) each */
+/* x: ordinate, y: impulse, of samples A and B, both centered  (n_rows x 2) each */
 struct pairs {
 	const double *x, *y;
 };
@@ -387,7 +387,7 @@ struct pair {
 	double x, y;
 };
 
-/* Means over the signals of one sample's ordinate x and of its largest impulse per mass y: not finite where a run failed. */
+/* Means over the signals of one sample's ordinate x and largest impulse per mass y: not finite if a run failed. */
 static struct pair pair_of(const struct pound_run *run, int cell, int row, int sample, int output)
 {
 	int n_signals = run->campaign.n_signals;
@@ -410,7 +410,7 @@ static void centre(double *x, int n)
 /* Correlation, over the samples A and B, of an ordinate with the largest impulse over the left mass.
  *
  * Given    scratch  (pound_ordinate_scratch)
- * Returns  value    Pearson's, with a 95 % interval by what the rows are; NAN: no ordinate, or one of them constant
+ * Returns  value    Pearson's, with a 95 % interval by jackknife or bootstrap; NAN: no ordinate, or x or y is constant
  * Test     unit_floor_outputs: the_correlation_is_that_of_the_samples, its_interval_is_by_groups_where_the_rows_have_some
  */
 struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, int cell, int output,
@@ -454,12 +454,12 @@ struct pound_estimate pound_ordinate_correlation(const struct pound_run *run, in
 
 /* ---- histories ---- */
 
-/* Where the instants of a signal go, in the units of the study. */
+/* Receiver of the instants of a signal, in the units of the study. */
 struct history {
 	pound_run_take *take;
 	void *into;
 	int signal, exponent;
-	bool both; /* there is another body */
+	bool both; /* a second body exists */
 	bool contact;
 	double mass;
 };
@@ -491,11 +491,11 @@ static void response_leave(void *into, const struct pound_outcome *outcome)
 	*first = *first ? *first : outcome->status;
 }
 
-/* Hands out the history of a signal.
+/* Reports the history of a signal.
  *
- * Given    run     of a study of spectra
- * Returns  take    called in the order of time
- * Status   POUND_CHATTER and others  the motion could not be followed, or not to its end
+ * Given    run     of a floor spectrum study
+ * Returns  take    called in order of time
+ * Status   POUND_CHATTER and others  the run or its repetition failed
  *          POUND_STOPPED             pound_run_stop was called
  * Test     unit_floor_outputs: a_history_is_that_of_the_signal
  */

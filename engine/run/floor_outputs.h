@@ -1,4 +1,4 @@
-/* floor_outputs.h - floor spectra as what a study asks for: in a block, over the signals, beside the impulse. */
+/* floor_outputs.h - floor spectra as outputs of a study: of a block, over the signals, correlated with the impulse. */
 #ifndef FLOOR_OUTPUTS_H
 #define FLOOR_OUTPUTS_H
 
@@ -7,18 +7,18 @@
 #include "engine/run/request.h"
 #include "engine/run/run.h"
 
-struct pound_ordinates; /* work space of one worker */
+struct pound_ordinates; /* scratch memory of one worker */
 
 int pound_ordinate_measures(
-    const struct pound_study *study); /* doubles of a run, after those of its outputs */
-size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks); /* 0: no spectra are asked */
+    const struct pound_study *study); /* doubles of a run, stored after its output values */
+size_t pound_ordinate_bytes(const struct pound_study *study, int n_tasks); /* 0: no spectra requested */
 struct pound_ordinates *pound_ordinate_init(void *memory, const struct pound_study *study, int n_tasks);
 
 enum pound_status pound_ordinate_block(struct pound_ordinates *ordinates, const struct pound_study *study,
                                        const struct pound_request *request, double *values,
                                        const atomic_bool *stop, struct pound_work *work);
 
-/* Lays the spectra of a result out in numbers  (POUND_N_SPECTRA x 4 x frequencies). */
+/* Points the spectra of a result into numbers  (POUND_N_SPECTRA x 4 x frequencies). */
 void pound_ordinate_layout(const struct pound_study *study, double *numbers,
                            struct pound_floor_result *result);
 size_t pound_ordinate_scratch(const struct pound_study *study, int n_rows); /* doubles */

@@ -1,10 +1,10 @@
-/* impacts.c - every contact of one signal of a study of responses, by running the responses with pounding once more. */
+/* impacts.c - every contact of one signal of a response study, by repeating the runs with pounding. */
 #include <math.h>
 
 #include "engine/run/request.h"
 #include "engine/run/run.h"
 
-/* Where the contacts of a cell go, in the units of the study. */
+/* Receiver of the contacts of a cell, in the units of the study. */
 struct impacts {
 	pound_impact_take *take;
 	void *into;
@@ -39,10 +39,10 @@ static void status_keep(void *into, const struct pound_outcome *outcome)
 	*first = *first ? *first : outcome->status;
 }
 
-/* Hands out every contact of a signal, cell after cell, in the order in which the contacts end.
+/* Reports every contact of a signal, cell after cell, in the order in which the contacts end.
  *
- * Given    run     of a study of responses by the event solver
- * Returns  take    called for the contacts that count; their number is that of the response
+ * Given    run     of a response study by the event solver
+ * Returns  take    called for each counted contact: as many times as contact_count of the response
  * Status   POUND_CHATTER and others  a motion could not be followed to its end
  *          POUND_STOPPED             pound_run_stop was called
  * Test     unit_impacts

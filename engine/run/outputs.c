@@ -1,6 +1,6 @@
-/* outputs.c - the outputs of a study: each the ratio of the means of two measures over a scene's signals.
+/* outputs.c - the outputs of a study: each is the ratio of the means of two measures over a scene's signals.
  *
- * Adding an output: its two measures and its row in outputs[]. */
+ * To add an output, add its two measures and a row in outputs[]. */
 #include "engine/run/outputs.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ static double displacement_free(const struct pound_response *r, const struct pou
 	return r->displacement_max_free_1;
 }
 
-// a body that never moves has no demand, which is not for want of a result
+// a body that never moves has no demand, but its run did not fail: count it as 0
 static double demand(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)scene;
@@ -60,14 +60,14 @@ static double demand_free(const struct pound_response *r, const struct pound_sce
 	return isnan(r->demand_free_1) ? 0 : r->demand_free_1;
 }
 
-/* Impulse over m1 w1: the displacement amplitude it gives to the left oscillator [m]. */
+/* Impulse over m1 w1: the resulting displacement amplitude of the left oscillator [m]. */
 static double impulse(const struct pound_response *r, const struct pound_scene *scene)
 {
 	const struct pound_oscillator *o = &scene->oscillators[0];
 	return r->impulse_max / (o->mass * (2 * 3.14159265358979323846 * o->frequency_hz));
 }
 
-/* An ordinate is filled in by floor_outputs.c, as it is not part of a response; it is a mean, not a ratio. */
+/* Placeholder of a spectral ordinate, which floor_outputs.c fills in; the output is a mean, not a ratio. */
 static double absent(const struct pound_response *r, const struct pound_scene *scene)
 {
 	(void)r, (void)scene;
@@ -115,7 +115,7 @@ static double acceleration_free(const struct pound_row_response *row, const stru
 	return storey_of(row, scene, at)->acceleration_max_free;
 }
 
-// as of one oscillator, a storey that never moves has no demand
+// a story that never moves has no demand: counted as 0, as for an oscillator
 static double storey_demand(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	const double value = storey_of(row, scene, at)->demand;
@@ -406,16 +406,16 @@ static bool is_pair(const struct pound_scene *scene)
 
 typedef double measure(const struct pound_response *, const struct pound_scene *);
 typedef double row_measure(const struct pound_row_response *, const struct pound_scene *,
-                           int at); /* number of its place or contact */
+                           int at); /* index of its place or contact */
 
 static const struct output {
 	const char *name;
 	const char *text;              /* one line of documentation */
-	const char *needs, *row_needs; /* of two oscillators and of a row, or of a study, in words */
+	const char *needs, *row_needs; /* required of two oscillators and of a row, or of a study, in words */
 	bool (*applies)(const struct pound_scene *);
-	measure *of, *over; /* of two oscillators: the output is the mean of the one over that of the other */
-	row_measure *row, *row_over; /* of a row of buildings likewise */
-	bool places, contacts;       /* of a row one output for each place, for each contact */
+	measure *of, *over;          /* of two oscillators: the output is mean(of) / mean(over) */
+	row_measure *row, *row_over; /* the same for a row of buildings */
+	bool places, contacts;       /* of a row: one output for each place, for each contact */
 	bool ordinates;              /* one output for each frequency of the spectrum */
 	unsigned asks;               /* of enum pound_output_ask */
 } outputs[] = {
@@ -563,7 +563,7 @@ bool pound_output_has_ordinates(int row)
 	return outputs[row].ordinates;
 }
 
-/* The frequency of an output: how many of the study's before it have ordinates. */
+/* The frequency index of an output: the number of earlier outputs with ordinates. */
 int pound_study_ordinate(const struct pound_study *study, int output)
 {
 	int k = 0;
@@ -574,7 +574,7 @@ int pound_study_ordinate(const struct pound_study *study, int output)
 	return k;
 }
 
-/* What the outputs of a study read beside what every study computes. */
+/* Additional data that the outputs of a study read, beyond what every study computes. */
 unsigned pound_outputs_asked(const struct pound_study *study)
 {
 	unsigned asked = 0;
@@ -593,7 +593,7 @@ bool pound_output_has_contacts(int row, const struct pound_scene *scene)
 	return scene->n_buildings > 0 && outputs[row].contacts;
 }
 
-/* How many of the study's outputs before one are of the same row. */
+/* The number of earlier outputs of the study with the same row. */
 static int before(const struct pound_study *study, int output)
 {
 	int k = 0;
@@ -619,7 +619,7 @@ bool pound_output_applies(int row, const struct pound_scene *scene)
 	return outputs[row].applies(scene);
 }
 
-/* The two measures of one signal whose means an output divides. */
+/* The two measures of an output for one signal. */
 void pound_outputs_measure(const struct pound_study *study, int output, const struct pound_outcome *outcome,
                            double *numerator, double *denominator)
 {

@@ -1,10 +1,10 @@
-/* outputs.h - from the responses to the signals of a scene to its outputs. */
+/* outputs.h - outputs of a scene from its responses to signals. */
 #ifndef OUTPUTS_H
 #define OUTPUTS_H
 
 #include "engine/pound.h"
 
-/* What came out of a scene under one signal. */
+/* The response of a scene under one signal. */
 struct pound_outcome {
 	const struct pound_scene *scene;
 	const struct pound_response *pair;    /* of two oscillators */
@@ -12,16 +12,16 @@ struct pound_outcome {
 	enum pound_status status;
 };
 
-/* What an output reads beside what every study computes. */
+/* Additional data that an output reads, beyond what every study computes. */
 enum pound_output_ask {
 	POUND_ASKS_RIGHT = 1,         /* the right body's displacements, with and without pounding */
 	POUND_ASKS_ACCELERATIONS = 2, /* of floors */
 	POUND_ASKS_FORCES = 4,        /* of contacts */
 	POUND_ASKS_FREE_PAIR = 8,     /* both oscillators together without contact, observed */
-	POUND_ASKS_ENERGIES = 16,     /* put in and lost */
-	POUND_ASKS_STILL = 32,        /* approach speeds and residual displacements, which every chain has */
-	POUND_ASKS_FREE_FLOORS = 64,  /* accelerations without pounding */
-	// of these two oscillators are run as a row of one-story buildings
+	POUND_ASKS_ENERGIES = 16,     /* input and dissipated */
+	POUND_ASKS_STILL = 32, /* approach speeds and residual displacements, available in every chain run */
+	POUND_ASKS_FREE_FLOORS = 64, /* accelerations without pounding */
+	// for any of these two oscillators are run as a row of one-story buildings
 	POUND_ASKS_CHAIN = POUND_ASKS_ACCELERATIONS | POUND_ASKS_FORCES | POUND_ASKS_ENERGIES | POUND_ASKS_STILL,
 };
 

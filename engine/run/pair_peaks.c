@@ -1,12 +1,12 @@
-/* pair_peaks.c - the largest displacements of two bodies against each other.
+/* pair_peaks.c - the largest relative displacements of two bodies.
  *
- * 1. Between two instants outside of contacts a cubic and the bound of its error show how large u_1 - u_2 may be; where that
- *    is more than at any instant so far, the interval is noted.
- * 2. In the end the notes that are still above are searched: u_1 - u_2 as a power series in time, or several where one does
- *    not reach, is halved until what it may exceed the largest value by is rounding.
+ * 1. Between two instants outside of contacts a cubic Hermite interpolant and its error bound limit u_1 - u_2; if the limit
+ *    exceeds the largest value at any instant so far, the interval is noted.
+ * 2. At the end the notes whose limit still exceeds the largest value are searched: u_1 - u_2 is a power series in time (several
+ *    for a long interval), and the interval is bisected until the possible excess is rounding error.
  *
- * Two linear bodies go from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact solver, which
- * passes the samples that cannot count (task.h). */
+ * Two linear bodies are advanced from sample to sample by their exact maps (pair_peaks.inl); others are followed by the exact
+ * solver, which skips samples that cannot contain a larger value (task.h). */
 #include "engine/run/pair_peaks.h"
 
 #include <assert.h>
@@ -20,7 +20,7 @@ enum { ORDER = 21, HALVINGS = 30, NEWTON = 20 };
 
 static const double REACH = 1.5; // largest rate * step of a series: 1.5^22/22! is below rounding
 
-/* A power series over a step, by the share of the step that is gone [m]. */
+/* A power series over a step, in the fraction x in [0, 1] of the step [m]. */
 struct series {
 	double c[ORDER + 1];
 	double bend, twist; /* bounds of its second and third derivative */
@@ -38,8 +38,8 @@ static void series_at(const struct series *s, double x, double at[3])
 	}
 }
 
-/* A bound of the second derivative from 0 to a share of the step: less than that of all of it where terms of high order are most of
- * it, as they are of bodies that leave their rest, like x^4. */
+/* A bound of the second derivative from 0 to a fraction of the step: sharper than s->bend if terms of high order dominate, as
+ * for bodies that start from rest, like x^4. */
 static double series_bend(const struct series *s, double share)
 {
 	double sum = 0;
@@ -48,7 +48,7 @@ static double series_bend(const struct series *s, double share)
 	return sum;
 }
 
-/* The largest value of a series that is concave between two points, by Newton's method on its slope. */
+/* Maximum of a series that is concave between two points, by Newton's method on its slope. */
 static double series_crest(const struct series *s, double low, double high, const double middle[3])
 {
 	double at[3] = {middle[0], middle[1], middle[2]}, x = 0.5 * (low + high), most = at[0];
@@ -80,13 +80,13 @@ static void series_search(const struct series *s, double middle, double half, in
 		*peak = fmax(*peak, series_crest(s, middle - half, middle + half, at));
 		return;
 	}
-	// the half that rises first, so that the other is often left out
+	// the rising half first, so that the other is often skipped
 	const double next = at[1] < 0 ? -0.5 * half : 0.5 * half;
 	series_search(s, middle + next, 0.5 * half, depth + 1, peak);
 	series_search(s, middle - next, 0.5 * half, depth + 1, peak);
 }
 
-/* Raises the peak to the largest value of a series times sign. */
+/* Raises the peak to the largest value of sign times a series. */
 static void series_peak(const struct series *s, double sign, double *peak)
 {
 	struct series signed_series = {.bend = s->bend, .twist = s->twist, .rounding = s->rounding};
@@ -149,7 +149,7 @@ static bool note_counts(const struct pound_pair_peaks *peaks, const struct pound
 	return note->most[0] > peaks->peak[0] || note->most[1] > peaks->peak[1];
 }
 
-/* Notes an interval; notes that do not count any more make room for it, else the first one is searched. */
+/* Notes an interval; obsolete notes are removed, and if there is still no room the first note is searched. */
 static void note_add(struct pound_pair_peaks *peaks, const struct pound_pair_note *note)
 {
 	int kept = 0;
@@ -174,8 +174,8 @@ static void notes_search(struct pound_pair_peaks *peaks)
 	peaks->n_notes = 0;
 }
 
-/* By how much the cubic through both ends of an interval may err: of the acceleration and the velocity at its start, and of the
- * growth of the ground acceleration.  No interval is longer than a sample, and no branch stiffer than the first.
+/* Error bound of the cubic through both ends of an interval, as factors of the acceleration and velocity at its start and of the
+ * slope of the ground acceleration.  No interval is longer than a sample, and no branch stiffer than the first.
  *
  *   |u''| <= A = (|u''(0)| + h (k |v(0)| + |a'|)) / (1 - h c - k h^2)     as u''' = -(c u'' + k u' + a'), |u'| <= |v(0)| + h A
  *   |u''''| <= c |u'''| + k A <= (c^2 + c k h + k) A + c k |v(0)| + c |a'|,   error <= h^4/384 |u''''|
@@ -190,7 +190,7 @@ static void error_fill(double error[3], const struct pound_task_body *b, double 
 	error[2] = is_short ? fourth * fabs(b->drive) * (most * h + c) : DBL_MAX;
 }
 
-/* Raises the peaks to the displacement at the end of an interval, and notes it where it may have been larger inside. */
+/* Raises the peaks to the displacement at the end of an interval, and notes the interval if a larger value inside is possible. */
 static void interval_look(struct pound_pair_peaks *peaks, const struct pound_instant_of_task *instant)
 {
 	const struct pound_instant_of_task *from = &peaks->from;
@@ -200,7 +200,7 @@ static void interval_look(struct pound_pair_peaks *peaks, const struct pound_ins
 	double error = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_task_body *b = &peaks->bodies[i];
-		assert(from->stiffness[i] <= 1.000001 * b->backbone.stiffness); // else the bound is of no use
+		assert(from->stiffness[i] <= 1.000001 * b->backbone.stiffness); // else the error bound is invalid
 		const double acceleration = b->damping * from->v[i] + from->stiffness[i] * from->u[i] +
 		                            (from->spring_offset[i] + b->drive * from->ground);
 		error += peaks->error[i][0] * fabs(acceleration) +
@@ -224,7 +224,7 @@ static void observe(void *into, const struct pound_instant_of_task *instant)
 		notes_search(peaks);
 }
 
-/* Samples in which nothing can be larger lie behind. */
+/* Skips n samples that cannot contain a larger value. */
 static void pass(void *into, const struct pound_instant_of_task *instant, int n)
 {
 	struct pound_pair_peaks *peaks = into;
@@ -255,8 +255,8 @@ void pound_pair_peaks_start(struct pound_pair_peaks *peaks, struct pound_task *t
 
 /* ---- linear bodies ---- */
 
-/* A body over one sample, from its displacement, velocity and the ground acceleration and its growth over the sample: their
- * columns, and by how much of each the cubic of its displacement may err. */
+/* Transition of a body over one sample: columns for its displacement, its velocity, the ground acceleration and the change of the
+ * ground acceleration, and the error bound of the displacement's cubic per column. */
 static void map_fill(struct pound_pair_maps *maps, int i, const struct pound_task_body *b, double step)
 {
 	for (int j = 0; j < POUND_PAIR_COLUMNS; j++) {
@@ -286,7 +286,7 @@ static bool has_maps(const struct pound_task *task)
 	return has;
 }
 
-/* Whether a task has the maps of another one, and as many samples. */
+/* Whether two tasks have the same maps and number of samples. */
 static bool goes_with(const struct pound_task *task, const struct pound_task *other)
 {
 	bool same = task->n_samples == other->n_samples && task->time_step == other->time_step;
@@ -298,9 +298,9 @@ static bool goes_with(const struct pound_task *task, const struct pound_task *ot
 	return same;
 }
 
-/* Notes a sample of two linear bodies.
+/* Notes a sample interval of two linear bodies.
  *
- * Given    note   their state at its start, and what is possible inside
+ * Given    note   state at the start of the interval, and bounds inside
  *          peak   closing and opening displacement so far
  */
 void pound_pair_sample(struct pound_pair_peaks *peaks, const struct pound_task *task, int s,
@@ -316,7 +316,7 @@ void pound_pair_sample(struct pound_pair_peaks *peaks, const struct pound_task *
 	note_add(peaks, note);
 }
 
-/* Follows the pairs at hand, and writes the closing and opening displacement of each. */
+/* Follows the collected pairs, and writes the closing and opening displacement of each. */
 void pound_pairs_finish(struct pound_pairs *all)
 {
 	static width_pairs *const run[POUND_WIDTHS] = {pound_pairs_w8, pound_pairs_w4, pound_pairs_w1,
@@ -334,12 +334,12 @@ void pound_pairs_finish(struct pound_pairs *all)
 	all->n = 0;
 }
 
-/* Adds the closing and opening displacement of two linear bodies that start at rest, without contact.
+/* Adds a pair of linear bodies that start at rest, without contact, to compute its closing and opening displacement.
  *
- * Given    pairs  all 0 at first
- *          task   its ground motion stays where it is until the pairs are finished
- * Returns  value  false: they are to be observed, as their steps are too long or a law is not linear
- *          peak   when the pairs are finished, which they also are when there are enough or this one has other maps
+ * Given    pairs  zeroed before the first call
+ *          task   its ground motion must stay valid until the pairs are finished
+ * Returns  value  false: use an observer instead, because steps are too long or a law is not linear
+ *          peak   set when the pairs are finished: by pound_pairs_finish, or when they are full or a pair has other maps
  * Test     unit_outputs: linear_bodies_have_the_peaks_that_an_observer_finds
  */
 bool pound_pairs_add(struct pound_pairs *all, const struct pound_task *task, double peak[2])
@@ -348,7 +348,7 @@ bool pound_pairs_add(struct pound_pairs *all, const struct pound_task *task, dou
 		return false;
 	if (all->n > 0 && !goes_with(task, &all->tasks[0]))
 		pound_pairs_finish(all);
-	// the first of the earlier ones is still there
+	// tasks[0] of the previous pairs is still stored
 	for (int i = 0; i < POUND_OSCILLATORS && all->n == 0 && !goes_with(task, &all->tasks[0]); i++)
 		map_fill(&all->maps, i, &task->bodies[i], task->time_step);
 	all->tasks[all->n] = *task;

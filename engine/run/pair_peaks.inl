@@ -1,10 +1,10 @@
-/* pair_peaks.inl - linear bodies without contact from sample to sample, one pair in each lane.
+/* pair_peaks.inl - pairs of linear bodies without contact from sample to sample, one pair per SIMD lane.
  *
  * Included by pair_peaks_w8.c and so on, once per lane count. */
 #include "engine/numeric/lanes.h"
 #include "engine/run/pair_peaks.h"
 
-/* One body of every pair. */
+/* State of one body of every pair. */
 struct movement {
 	vd u, v;
 };
@@ -17,13 +17,13 @@ LANE_INLINE struct movement moved(const struct pound_pair_maps *maps, int i, str
 	    vsplat(v[1]) * from.v + (vsplat(v[0]) * from.u + (vsplat(v[2]) * a + vsplat(v[3]) * d))};
 }
 
-/* How much the cubic of a body's displacement may err for its own motion. */
+/* Error bound of the cubic for a body's displacement, due to its own state. */
 LANE_INLINE vd error_of(const struct pound_pair_maps *maps, int i, struct movement from)
 {
 	return vsplat(maps->error[i][0]) * vabs(from.u) + vsplat(maps->error[i][1]) * vabs(from.v);
 }
 
-/* What lanes hold of a sample. */
+/* Lane values of a sample as arrays. */
 struct sample {
 	double u[POUND_OSCILLATORS][W], v[POUND_OSCILLATORS][W], high[W], low[W], top[W], bottom[W];
 };
@@ -33,7 +33,7 @@ LANE_INLINE void lanes_put(vd from, double to[W])
 	__builtin_memcpy(to, &from, sizeof from);
 }
 
-/* Follows W pairs from `first` on; lanes beyond the last one repeat it. */
+/* Follows W pairs from `first` on; lanes beyond the last pair repeat it. */
 static void group_follow(const struct pound_pairs *all, int first, struct pound_pair_peaks *peaks)
 {
 	const struct pound_pair_maps *maps = &all->maps;
@@ -59,7 +59,7 @@ static void group_follow(const struct pound_pairs *all, int first, struct pound_
 		const vd high = vmax(b2, inner) + error, low = vmin(b2, inner) - error;
 		top = vmax(top, p1);
 		bottom = vmin(bottom, p1);
-		// few samples may hold more than their ends
+		// rarely, a larger displacement is possible inside the interval than at its ends
 		unsigned more = vbits(vless(top, high) | vless(low, bottom)) & ((1u << n) - 1);
 		if (more) {
 			struct sample of;

@@ -1,14 +1,14 @@
-/* pilot.c - a study whose number of signals is to be found: a pilot of few rows, and the split of the runs that is best.
+/* pilot.c - chooses the number of signals per row of a study: a pilot of few rows, and the best split of the runs.
  *
- * 1. The pilot is a design of its own, a Latin hypercube of 32 to 128 rows with six signals each, a tenth of the runs at most
- *    unless that is fewer rows; its runs are not used again.
- * 2. Every S1 and ST of every output and cell gives the parts of its variance (signal_split.c).  With n rows of R signals its half
+ * 1. The pilot is a separate Latin hypercube of 32 to 128 rows with six signals each, at most a tenth of the runs unless 32 rows
+ *    need more; its runs are not reused.
+ * 2. Every S1 and ST of every output and cell gives its variance components (signal_split.c).  With n rows of R signals the half
  *    width is h(R, n)^2 = 1.96^2 (rows + signals / R + pairs / (R (R - 1))) / n + bias(R)^2.
- * 3. Of a fixed number of runs N = n R samples the widest index of all decides.  Where one index decides throughout, and without bias,
- *    R = 1 + sqrt(pairs / rows) is the minimum of N h^2.  Of a design that grows the fewest rows with which none is wider than
- *    asked are sought, and of all R the one that costs least; if none gets there, the one that comes nearest.
+ * 3. With a fixed number of runs N = n R samples the widest index decides.  If one index is widest for all R, and without bias,
+ *    R = 1 + sqrt(pairs / rows) minimizes N h^2.  For a growing design, each R has a fewest number of rows with which no interval
+ *    is wider than requested; the R of least cost is taken, or, if no R reaches the goal, the R that comes nearest.
  *
- * Rows cost more than their runs, as indices are estimated from them: as much as ROW_RUNS runs for each output. */
+ * A row costs more than its runs because of the estimation of indices: ROW_RUNS runs per output. */
 #include "engine/run/run.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@ enum {
 	PILOT_MOST = 128, /* rows */
 	PILOT_SHARE = 10, /* of the runs */
 	ROW_RUNS =
-	    4, /* CPU time of the indices of an output, of each row and look, in runs of the reference scene: make bench */
+	    4, /* CPU time of the indices, per output, row and look, in runs of the reference scene: make bench */
 };
 
 static const int signals_of[POUND_SPLITS] = {2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 32};
@@ -72,7 +72,7 @@ void pound_study_split(const struct pound_study *study, int signals, struct poun
 	rows = rows < POUND_ROWS_MAX ? rows : POUND_ROWS_MAX;
 	as_split->design.rows = rows > 0 ? (int)rows : 0;
 	as_split->design.runs = 0;
-	// a net is even for a power of two in each scramble
+	// a Sobol' sequence is balanced with a power of two of rows in each scramble
 	const int nets = pound_design_grouping(as_split).n;
 	if (!pound_design_quasi_random(as_split->design.method))
 		return;
@@ -80,12 +80,12 @@ void pound_study_split(const struct pound_study *study, int signals, struct poun
 		as_split->design.rows *= 2;
 }
 
-/* What a number of signals is worth, of all indices taken so far. */
+/* Evaluation of a number of signals, over the indices taken so far. */
 struct tried {
 	struct pound_study study;
 	int first, most; /* rows */
-	double needed;   /* rows, of the index that needs most */
-	double error;    /* squared half width with the most rows, of the widest */
+	double needed;   /* rows for the index that needs most */
+	double error;    /* squared half width of the widest index, with the most rows */
 	struct pound_look worst;
 	struct pound_split_parts parts;
 };
@@ -129,16 +129,16 @@ static void output_take(struct pound_run *pilot, int cell, int output, struct tr
 	}
 }
 
-/* Rows that a number of signals is foreseen to take; reached: with those every interval is as narrow as was asked. */
+/* Predicted number of rows with a number of signals; reached: with these rows every interval is narrow enough. */
 static double rows_foreseen(const struct tried *t, bool *reached)
 {
 	*reached = t->needed <= t->most;
 	return *reached ? fmax(t->needed, t->first) : t->most;
 }
 
-/* The best of the numbers of signals.
+/* Chooses the best number of signals.
  *
- * Returns  split   choices, and what decided
+ * Returns  split   choices, and the index that decided
  */
 static void choose(const struct tried tried[POUND_SPLITS], struct pound_split *split)
 {
@@ -186,7 +186,7 @@ size_t pound_pilot_scratch(const struct pound_run *pilot)
 /* Runs the pilot of a study whose design is split, and takes the best split.
  *
  * Given    pilot     -                       of pound_pilot_study(&run->study), not run yet
- * Returns  run       -                       the study with its split, and that in the result
+ * Returns  run       -                       the study with its number of signals; the split in the result
  * Status   POUND_STOPPED  stop was set
  * Memory   scratch   (pound_pilot_scratch)
  * Test     unit_pilot
@@ -219,7 +219,7 @@ enum pound_status pound_pilot_run(struct pound_run *run, struct pound_run *pilot
 		return POUND_STOPPED;
 	choose(tried, split);
 	pound_study_split(&given, split->signals, &run->study);
-	// a look takes time: none before an eighth of the rows foreseen, as what polynomials leave of the variance falls with them
+	// a look takes time: first at 1/8 of the predicted rows; fewer than predicted may do, as residuals of polynomials shrink
 	if (given.design.until.half_width > 0)
 		run->study.design.rows = (int)fmax(given.design.rows, split->decided_by.rows / 8);
 	split->rows = run->study.design.rows;

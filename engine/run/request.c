@@ -1,12 +1,12 @@
-/* request.c - runs the items of a block, each needed thing once.
+/* request.c - runs the items of a block without duplicates.
  *
- * 1. every sample of every cell asks for its ground motion, its responses without pounding and its run with pounding;
- * 2. what is asked is written down as a key of numbers, equal keys are one motion or one march;
- * 3. motions are filled, then marches run stage by stage: linear responses, nonlinear ones with the yield
- *    displacement found from the stages before, last the runs with pounding.
+ * 1. every sample of every cell (an "ask") requests its ground motion, its responses without pounding and its run with pounding;
+ * 2. each request is a key of numbers; equal keys are one motion or one march (a run of the solver);
+ * 3. motions are filled, then marches run stage by stage: linear responses, nonlinear responses with the yield
+ *    displacement found from earlier stages, last the runs with pounding.
  *
- * The check of an item is all this once more on ground motions with a sample between every two: the same signal, as it
- * is linear between samples, in other steps with other maps, series and root searches. */
+ * The check of an item repeats all this on ground motions with an interpolated sample between every two: the same
+ * signal, which is linear between samples, but other steps with other maps, series and root searches. */
 #include "engine/run/request.h"
 
 #include <assert.h>
@@ -29,10 +29,10 @@
 #include "engine/solver/solver.h"
 
 enum {
-	SEARCH_MIN = 2, /* corrections from which on they are those of a search */
+	SEARCH_MIN = 2, /* corrections from which on a search is made */
 };
 
-/* The ground motion of a sample: its excitation, and the noise of its row and signal, if it has any. */
+/* Registers the ground motion of a sample: its excitation, and the noise of its row and signal, if random. */
 static int motion_ask(struct pound_request *request, const struct pound_excitation *e,
                       struct pound_stream noise, bool halved)
 {
@@ -46,7 +46,7 @@ static int motion_ask(struct pound_request *request, const struct pound_excitati
 	return j;
 }
 
-/* A march; bodies and contact are set, the ground motion is added here. */
+/* Registers a march; bodies and contact are set, the ground motion is added here. */
 static int march_ask(struct pound_request *request, int motion, struct pound_task *task)
 {
 	const struct pound_motion *m = &request->motions[motion];
@@ -63,8 +63,8 @@ static int march_ask(struct pound_request *request, int motion, struct pound_tas
 
 /* ---- stages ---- */
 
-/* Whether every force of the asked scenes scales with the motion: then scaling a ground motion by a power of two changes no digit
- * of any response. */
+/* Whether every contact force of the scenes scales with the motion: then scaling a ground motion by a power of two changes no
+ * digit of any response. */
 static bool forces_scale(const struct pound_request *request)
 {
 	bool scale = true;
@@ -77,7 +77,7 @@ static bool forces_scale(const struct pound_request *request)
 	return scale;
 }
 
-/* Whether the exact solver can check tasks [from, end): else the study's own solver does, on half the sample step. */
+/* Whether the exact solver can run the checks [from, end); else the study's solver runs them, on half the sample step. */
 static bool exact_takes(const struct pound_request *request, int from, int end)
 {
 	bool takes = true;
@@ -87,8 +87,8 @@ static bool exact_takes(const struct pound_request *request, int from, int end)
 	return takes;
 }
 
-/* Runs the marches asked since the stage before.  The first ones are those of the checks, which the exact solver runs where
- * it can, whatever the study's solver. */
+/* Runs the marches requested since the previous stage.  The marches of the checks come first, and are run by the exact solver
+ * if possible, whatever the study's solver. */
 static enum pound_status marches_run(struct pound_request *request, const struct pound_solver *solver,
                                      int checks_end, int *done, const atomic_bool *stop)
 {
@@ -96,7 +96,7 @@ static enum pound_status marches_run(struct pound_request *request, const struct
 	int from = *done, n = request->march_keys.n;
 	assert(n <= request->size.tasks);
 	const struct pound_solver *checks = exact_takes(request, from, checks_end) ? &exact : solver;
-	// one call for both where it can be, as it fills the lanes better
+	// one call for both if possible, as it fills the lanes better
 	int cut = solver->method == checks->method ? n : checks_end;
 	*done = n;
 	enum pound_status status = pound_solver_run(checks, &request->tasks[from], &request->results[from],
@@ -106,10 +106,10 @@ static enum pound_status marches_run(struct pound_request *request, const struct
 	                                 request->scratch, stop);
 }
 
-/* Longest length that is nothing beside the motion [m], scaled as the ground motion is.
+/* Largest negligible length [m], in the scale of the ground motion.
  *
- * 2^-90 of what a ground acceleration of one moves a body in a sample: it is crossed in 2^-45 of a step or more, which
- * a search for events still resolves; a shorter one would be crossed within a step's rounding.
+ * 2^-90 of the displacement of a body in one sample by a unit ground acceleration: it is crossed in 2^-45 of a step or more,
+ * which an event search still resolves; a shorter length would be crossed within a step's rounding.
  */
 static double negligible(const struct pound_request *request, const struct ask *ask)
 {
@@ -119,7 +119,7 @@ static double negligible(const struct pound_request *request, const struct ask *
 	return 0x1p-90 * least;
 }
 
-/* The yield displacement a march follows; any will do for a body that never moves. */
+/* The yield displacement used in a march, limited to a resolvable range; 1 (arbitrary) for a body that never moves. */
 static double yield_marched(const struct pound_request *request, const struct ask *ask, double yield)
 {
 	return yield > 0 ? fmin(fmax(yield, negligible(request, ask)), 1 / DBL_EPSILON / DBL_EPSILON) : 1;
@@ -142,10 +142,10 @@ static bool searched(const struct pound_law *law)
 	return !pound_law_linear(law->type) && !(law->yield_displacement > 0) && law->corrections >= SEARCH_MIN;
 }
 
-/* Asks for the next march of a search for the target demand, behind the one with the reduced elastic displacement.
+/* Requests the next march of a search for the target demand, which starts from the march with the reduced elastic displacement.
  *
- * Returns  value   false: none is needed; the march that came nearest to it is the response
- *          work    how the search ended
+ * Returns  value   false: none is needed; the march nearest to the target is the response
+ *          work    counts how the search ended
  */
 static bool search_stage(struct pound_request *request, const struct ask *ask, struct body_ask *body, int i,
                          int stage, struct pound_work *work)
@@ -177,10 +177,10 @@ static bool search_stage(struct pound_request *request, const struct ask *ask, s
 	return false;
 }
 
-/* Asks for a body's march of a stage: stage 0 is linear, stage k >= 1 has the yield displacement found by then.
+/* Requests a body's march of a stage: stage 0 is linear, stage k >= 1 uses the yield displacement found so far.
  *
  * Returns  value   false: none is needed
- *          work    what was left out is counted
+ *          work    counts skipped marches
  */
 static bool body_stage(struct pound_request *request, const struct ask *ask, struct body_ask *body, int i,
                        int stage, struct pound_work *work)
@@ -226,7 +226,7 @@ static bool body_stage(struct pound_request *request, const struct ask *ask, str
 	return true;
 }
 
-/* What the sample needs without pounding. */
+/* Sets which responses without pounding a sample needs. */
 static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 {
 	const struct pound_scene *scene = &ask->scene;
@@ -236,7 +236,7 @@ static void ask_free(const struct pound_cells *campaign, struct ask *ask)
 	bool right = response || may_miss || pound_outputs_asked(campaign->study) & POUND_ASKS_RIGHT;
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		bool moves = !scene->oscillators[i].rigid_wall;
-		// a study of gaps needed alone takes all from the run of both bodies together, where there is one
+		// a study of gaps needed only reads the run of both bodies together, if there is one
 		const struct pound_law *law = pound_scene_law(scene, i);
 		bool together =
 		    !pound_study_pounds(campaign->study) && !pound_law_linear(law->type) && !searched(law);
@@ -250,7 +250,7 @@ static int stages_of(const struct ask *ask)
 	for (int i = 0; i < POUND_OSCILLATORS; i++) {
 		const struct pound_law *law = pound_scene_law(&ask->scene, i);
 		stages = (int)fmax(stages,
-		                   2 + law->corrections + (searched(law) ? 1 : 0)); // one to look at the last march
+		                   2 + law->corrections + (searched(law) ? 1 : 0)); // one to evaluate the last march
 	}
 	return stages;
 }
@@ -281,7 +281,7 @@ struct pound_task pound_request_pair_task(const struct pound_request *request, c
 	return task;
 }
 
-/* Asks for the run with pounding, unless the responses without it are the answer. */
+/* Requests the run with pounding, unless the responses without pounding are final. */
 static void ask_pounding(struct pound_request *request, struct ask *ask, struct pound_work *work)
 {
 	ask->march = -1;
@@ -300,9 +300,9 @@ static void ask_pounding(struct pound_request *request, struct ask *ask, struct 
 	ask->march = march_ask(request, ask->motion, &task);
 }
 
-/* Follows both bodies without contact, or asks for that, where an output reads how far they close a gap.
+/* Follows both bodies without contact, or requests a march, if an output reads their closing displacement.
  *
- * Returns  value   false: it was asked for
+ * Returns  value   false: a march was requested
  */
 static bool follow_free_pair(struct pound_request *request, int a)
 {
@@ -317,7 +317,7 @@ static bool follow_free_pair(struct pound_request *request, int a)
 		return true;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		task.bodies[i].followed |= !ask->bodies[i].finished && !ask->scene.oscillators[i].rigid_wall;
-	// a body beside a wall without contact is not the same run as that body alone, which nothing observes
+	// a body beside a wall without contact is not the run of the body alone, which has no observer
 	const int known = request->march_keys.n;
 	task.observer = &request->peaks[known].observer;
 	ask->free_pair = march_ask(request, ask->motion, &task);
@@ -326,7 +326,7 @@ static bool follow_free_pair(struct pound_request *request, int a)
 	return false;
 }
 
-/* Asks for both bodies as one-story buildings, where an output reads what these have. */
+/* Requests both bodies as one-story buildings, if an output reads their quantities. */
 static void follow_chain(struct pound_request *request, struct ask *ask)
 {
 	const unsigned asks = pound_outputs_asked(request->campaign->study);
@@ -349,7 +349,7 @@ static const struct pound_chain_result *chain_result(const struct pound_request 
 	return march < 0 ? NULL : &request->rows.results[march];
 }
 
-/* What was run of an ask. */
+/* The runs of an ask. */
 static struct pound_runs_known ask_known(const struct pound_request *request, const struct ask *ask)
 {
 	struct pound_runs_known known = {.scene = &ask->scene,
@@ -387,7 +387,7 @@ static void row_free(struct pound_request *request, int a)
 	                   study->kind == POUND_KIND_RESPONSE || study->spectrum.n > 0 ||
 	                       pound_outputs_asked(study) & POUND_ASKS_FREE_PAIR,
 	                   pound_row_asked(study) | (request->asks[a].balanced ? POUND_CHAIN_ENERGY : 0));
-	// a study of gaps needed alone takes all from the run of all buildings together
+	// a study of gaps needed only reads the run of all buildings together
 	for (int b = 0; b < scene.n_buildings && !pound_study_pounds(study); b++)
 		request->row_asks[a].buildings[b].wanted = false;
 }
@@ -398,7 +398,7 @@ static int marches_known(const struct pound_request *request)
 	return request->march_keys.n + request->rows.n;
 }
 
-/* What came of an ask. */
+/* The response of an ask. */
 static struct pound_outcome ask_outcome(const struct pound_request *request, int a, struct pound_scene *scene,
                                         struct pound_response *pair, struct pound_row_response *row)
 {
@@ -418,7 +418,7 @@ static struct pound_outcome ask_outcome(const struct pound_request *request, int
 
 /* ---- the block ---- */
 
-/* Writes down the samples of one item from ask `a` on; returns the one after them. */
+/* Enters the samples of one item from ask `a` on; returns the next free ask. */
 static int item_write(struct pound_request *request, const struct pound_cells *campaign, int a, int item,
                       bool halved)
 {
@@ -442,7 +442,7 @@ static int item_write(struct pound_request *request, const struct pound_cells *c
 	return a;
 }
 
-/* Asks for what asks [first, end) need of a stage without pounding; false: nothing, nor of a later one. */
+/* Requests the marches of a stage without pounding for asks [first, end); false: none in this stage or later. */
 static bool stage_ask(struct pound_request *request, int first, int end, int stage,
                       struct pound_stage_work *counted, struct pound_work *work)
 {
@@ -462,10 +462,10 @@ static bool stage_ask(struct pound_request *request, int first, int end, int sta
 	}
 	counted->asked += asked;
 	counted->run += marches_known(request) - before;
-	return asked > 0 || stage == 0; // of a yield displacement that is given, the first is left out
+	return asked > 0 || stage == 0; // with a given yield displacement stage 0 is skipped
 }
 
-/* Asks for the runs with pounding of asks [first, end). */
+/* Requests the runs with pounding of asks [first, end). */
 static void pounding_ask(struct pound_request *request, int first, int end, struct pound_stage_work *counted,
                          struct pound_work *work)
 {
@@ -484,13 +484,13 @@ static void pounding_ask(struct pound_request *request, int first, int end, stru
 	counted->run += marches_known(request) - before;
 }
 
-/* Runs items [first, first + n) of a campaign, and the checks among them.
+/* Runs items [first, first + n) of a campaign, and their checks.
  *
- * Given    stop      looked at throughout
- * Returns  take      called for every item, cell and sample in this order, then for those of the checks
- *          work      what was asked and run is added
- * Status   POUND_STOPPED  stop was set; nothing was handed to take
- *          POUND_NOMEM    there was no memory for a run, so too
+ * Given    stop      checked throughout
+ * Returns  take      called for every item, cell and sample in this order, then for the checks
+ *          work      work requested and done is added
+ * Status   POUND_STOPPED  stop was set; take was not called
+ *          POUND_NOMEM    no memory for a run; take was not called
  */
 enum pound_status pound_request_run(struct pound_request *request, struct pound_items items,
                                     const atomic_bool *stop, struct pound_work *work,
@@ -516,7 +516,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	pound_motions_fill(request->motions, request->motion_keys.n, forces_scale(request), request->ground,
 	                   request->size.samples);
 
-	struct pound_work of_checks = {0}; // what they leave out is not reported
+	struct pound_work of_checks = {0}; // skipped work of checks is not reported
 	int done = 0, stages = 1;
 	for (int a = 0; a < n_asks; a++) {
 		const struct ask *ask = &request->asks[a];
@@ -525,7 +525,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 	enum pound_status status = POUND_OK;
 	bool more = true;
 	for (int stage = 0; stage < stages && more && !status; stage++) {
-		// the checks, which take longer, start first, so that no lane waits for them at the end
+		// the checks, which take longer, start first, so that no lane idles at the end
 		more = stage_ask(request, n_items, n_asks, stage, &work->checks, &of_checks);
 		int checks_end = request->march_keys.n, row_checks_end = request->rows.n;
 		more |=
@@ -573,7 +573,7 @@ enum pound_status pound_request_run(struct pound_request *request, struct pound_
 		work->chain_runs.run += request->rows.n - known;
 		work->chain_runs.asked += 1 + (request->asks[a].chain_free != request->asks[a].chain);
 	}
-	// by the exact solver, as the pairs were
+	// by the exact solver, as the pairs
 	status = pound_row_run(&request->rows, &solver, request->rows.n, stop);
 	if (status)
 		return status;

@@ -1,10 +1,10 @@
-/* request_answers.c - what is read of a request after it was run: floors, pairs, chains, displacements, and its repetition. */
+/* request_answers.c - data of a request after its runs: floors, pairs, chains, displacements; and repeated runs. */
 #include <assert.h>
 #include <math.h>
 
 #include "engine/run/request_parts.h"
 
-/* The same of the top of the left building of a row, in place of the result of its march. */
+/* pound_request_displacement for a row of buildings: top of the left building; overwrites the result of its march. */
 static enum pound_status row_displacement(struct pound_request *request, const struct pound_solver *solver,
                                           int item, int sample, const atomic_bool *stop, double *u)
 {
@@ -89,7 +89,7 @@ struct pound_request_floor pound_request_floor(const struct pound_request *reque
 	return floor;
 }
 
-/* The two bodies of an ask together; without contact where the answer is the responses without it. */
+/* The two bodies of an ask together; without contact if the responses without pounding are final. */
 struct pound_task pound_request_pair(const struct pound_request *request, int ask)
 {
 	const struct ask *a = &request->asks[ask];

@@ -1,4 +1,4 @@
-/* request_keys.c - ground motions and runs as keys of numbers: equal keys are one motion or one run. */
+/* request_keys.c - keys of numbers that identify ground motions and runs: equal keys are the same motion or run. */
 #include "engine/run/request_keys.h"
 
 #include <string.h>
@@ -22,7 +22,7 @@ static int number_of(struct pound_keys *r, const double key[static POUND_KEY])
 	return r->slots[slot] = r->n++;
 }
 
-/* Number of a ground motion: its excitation, and the noise of its row and signal, if it has any. */
+/* Number of a ground motion: its excitation, and the noise of its row and signal, if random. */
 int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e, struct pound_stream noise,
                       bool halved)
 {
@@ -33,7 +33,7 @@ int pound_keys_motion(struct pound_keys *keys, const struct pound_excitation *e,
 	return number_of(keys, key);
 }
 
-enum { LAW_KEY = 15 }; /* numbers of a contact */
+enum { LAW_KEY = 15 }; /* numbers before the bodies: motion, options and contact */
 
 /* Number of a run: a task under a motion. */
 int pound_keys_run(struct pound_keys *keys, int motion, const struct pound_task *task)

@@ -1,4 +1,4 @@
-/* request_keys.h - ground motions and runs as keys of numbers: equal keys are one motion or one run. */
+/* request_keys.h - keys of numbers that identify ground motions and runs: equal keys are the same motion or run. */
 #ifndef REQUEST_KEYS_H
 #define REQUEST_KEYS_H
 
@@ -7,7 +7,7 @@
 
 enum { POUND_KEY = 27 }; /* doubles of a key, both of a motion and of a run */
 
-/* equal keys have one number, in the order they were first registered */
+/* equal keys share one number; numbers in the order of first registration */
 struct pound_keys {
 	int n, n_slots;
 	double *keys; /* (capacity x POUND_KEY) */

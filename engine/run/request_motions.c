@@ -5,7 +5,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Puts the mean of every two samples between them. */
+/* Inserts the mean of every two samples between them. */
 static void motion_halve(struct pound_motion *m)
 {
 	double *g = m->ground;
@@ -20,7 +20,7 @@ static void motion_halve(struct pound_motion *m)
 
 /* Fills the ground motions and, if `scaled`, scales each by a power of two.
  *
- * Returns  motions  their samples, carved out of ground in turn  (n)
+ * Returns  motions  their samples, allocated from ground one after another  (n)
  *          ground   (n_ground)
  */
 void pound_motions_fill(struct pound_motion *motions, int n, bool scaled, double *ground, int64_t n_ground)
@@ -46,7 +46,7 @@ void pound_motions_fill(struct pound_motion *motions, int n, bool scaled, double
 			motion_halve(m);
 		const double peak = pound_excitation_largest(m->n_samples, m->ground);
 		m->exponent = scaled && peak > 0 ? ilogb(peak) : 0;
-		// in two factors, as that of a peak below the normal numbers is beyond the largest one
+		// in two factors, as the scale factor of a subnormal peak exceeds the largest double
 		const int first = -m->exponent < DBL_MAX_EXP ? -m->exponent : DBL_MAX_EXP - 1;
 		const double factor = ldexp(1, first), rest = ldexp(1, -m->exponent - first);
 		for (int t = 0; t < m->n_samples && m->exponent != 0; t++)

@@ -7,11 +7,11 @@
 struct pound_motion {
 	struct pound_excitation excitation;
 	struct pound_stream noise;
-	bool halved; /* a sample between every two */
+	bool halved; /* with an interpolated sample between every two */
 	int n_samples;
 	double time_step; /* [s] */
-	int number;       /* among those of the block */
-	int exponent;     /* samples are kept times 2^-exponent, so that the largest is in [1, 2) */
+	int number;       /* index in the block */
+	int exponent;     /* samples are scaled by 2^-exponent, so that the largest is in [1, 2) */
 	double *ground;   /* (n_samples) */
 };
 

@@ -1,4 +1,4 @@
-/* request_parts.h - the inside of a request.  For request.c, request_answers.c and request_size.c. */
+/* request_parts.h - internals of a request, for request.c, request_answers.c and request_size.c only. */
 #ifndef REQUEST_PARTS_H
 #define REQUEST_PARTS_H
 
@@ -8,11 +8,11 @@
 #include "engine/run/request_keys.h"
 #include "engine/run/request_motions.h"
 
-/* what is known of one body without pounding */
+/* state of the runs of one body without pounding */
 struct body_ask {
-	int march;                /* the last one asked, -1: none */
+	int march;                /* last one requested, -1: none */
 	double yield;             /* [m] scaled; 0: the law has none, or the body never moves */
-	enum pound_status status; /* of the marches its yield displacement comes from */
+	enum pound_status status; /* of the marches that determine its yield displacement */
 	bool wanted;   /* its response without pounding is needed, beyond finding its yield displacement */
 	bool finished; /* the last march is that response */
 	bool found;    /* the search for the target demand is over */
@@ -21,14 +21,14 @@ struct body_ask {
 
 struct ask {
 	struct pound_scene scene;
-	int cell, row, sample; /* of it */
+	int cell, row, sample; /* of the scene */
 	int motion;
-	bool response; /* all of the response is wanted */
-	bool balanced; /* with the energy balances of its runs */
+	bool response; /* the whole response is requested */
+	bool balanced; /* with energy balances of its runs */
 	struct body_ask bodies[POUND_OSCILLATORS];
-	int march;             /* with pounding; -1: the responses without pounding are the answer */
+	int march;             /* with pounding; -1: the responses without pounding are final */
 	int free_pair;         /* both bodies without contact, observed; -1: not run */
-	int chain, chain_free; /* both bodies as one-story buildings: the answer, and without contact; likewise */
+	int chain, chain_free; /* both bodies as one-story buildings: final, and without contact; -1: not run */
 };
 
 struct pound_request {
@@ -37,24 +37,24 @@ struct pound_request {
 	struct pound_motion *motions;       /* (motions) */
 	double *ground;                     /* (samples) */
 	struct ask *asks;                   /* (asks) */
-	struct pound_row_ask *row_asks;     /* of a row of buildings, instead of their bodies and march  (asks) */
-	struct pound_row_asks rows;         /* the marches of these */
+	struct pound_row_ask *row_asks;     /* for rows of buildings, instead of bodies and march  (asks) */
+	struct pound_row_asks rows;         /* marches of row_asks */
 	const struct pound_cells *campaign; /* of the last run */
 	struct pound_task *tasks;           /* (tasks) */
 	struct pound_task_result *results;  /* (tasks) */
-	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; none: no output reads them) */
+	struct pound_pair_peaks *peaks; /* of observed marches, by march  (tasks; NULL: no output reads them) */
 	double (*free_pair)
-	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; likewise) */
-	struct pound_pairs pairs;    /* linear bodies that are being followed without contact */
-	void *scratch;               /* of the march */
-	int n_before, n_rows_before; /* marches without pounding, they are the first */
-	int n_asks, n_items;         /* of the last run; n_items without those of checks */
+	    [2]; /* closing and opening displacement of both bodies without contact, by ask  (asks; none: not read) */
+	struct pound_pairs pairs;    /* linear pairs to follow without contact */
+	void *scratch;               /* of the solver */
+	int n_before, n_rows_before; /* number of marches without pounding, which come first */
+	int n_asks, n_items;         /* of the last run; n_items: without checks */
 };
 
-/* The scene of an ask with its own buildings, until the next one is asked for. */
+/* The scene of an ask with its own buildings, valid until the next call. */
 struct pound_scene pound_request_row_scene(const struct pound_request *request, const struct ask *ask);
 
-/* Both bodies of an ask, whose yield displacements are known, and their contact; the ground motion is not set. */
+/* Task of both bodies of an ask, with known yield displacements, and their contact; the ground motion is not set. */
 struct pound_task pound_request_pair_task(const struct pound_request *request, const struct ask *ask);
 
 #endif

@@ -1,11 +1,11 @@
-/* request_size.c - the work space of a request, and how much of it an item of a study takes at most. */
+/* request_size.c - the scratch memory of a request, and upper bounds of its use by an item of a study. */
 #include <string.h>
 
 #include "engine/ground/excitation.h"
 #include "engine/numeric/hash.h"
 #include "engine/run/request_parts.h"
 
-/* Gives a scene buildings that have the storeys of a cell. */
+/* Gives a scene its own buildings with the numbers of stories of a cell. */
 static void storeys_put(const struct pound_cells *campaign, int cell,
                         struct pound_building buildings[POUND_BUILDINGS_MAX], struct pound_scene *scene)
 {
@@ -16,7 +16,7 @@ static void storeys_put(const struct pound_cells *campaign, int cell,
 			pound_scene_assign(scene, campaign->study->sweeps[s].field, pound_cells_sweep(campaign, cell, s));
 }
 
-/* Whether contacts of a row have models that vary: a scene is without them here. */
+/* Whether contact models of a row vary; the scenes here do not have the varied models. */
 static bool models_vary(const struct pound_study *study)
 {
 	bool vary = false;
@@ -29,7 +29,7 @@ static bool models_vary(const struct pound_study *study)
 	return vary;
 }
 
-/* Upper bounds for the items of one row: whatever may differ between its samples counts as different. */
+/* Upper bounds for the items of one row: everything that may differ between its samples counts as different. */
 struct pound_request_size pound_request_size(const struct pound_cells *campaign, int row)
 {
 	struct pound_request_size size = {0};
@@ -58,9 +58,9 @@ struct pound_request_size pound_request_size(const struct pound_cells *campaign,
 	return size;
 }
 
-/* ---- work space ---- */
+/* ---- scratch memory ---- */
 
-/* Bytes of work space of the marches: rows of buildings alone take less than oscillators. */
+/* Scratch of the solver in bytes: rows of buildings only take less than oscillators. */
 size_t pound_request_scratch(struct pound_request_size size)
 {
 	return size.tasks || !size.rows.tasks ? (size_t)POUND_EXACT_SCRATCH : size.rows.scratch;
@@ -110,7 +110,7 @@ static size_t request_carve(char *memory, struct pound_request *request, struct 
 	return at;
 }
 
-/* Bytes of a request's work space, to be 64-byte aligned. */
+/* Bytes of a request, to be 64-byte aligned. */
 size_t pound_request_bytes(struct pound_request_size size)
 {
 	struct pound_request request;

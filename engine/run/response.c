@@ -6,7 +6,7 @@
 #include "engine/run/scene.h"
 #include "engine/scene/law.h"
 
-/* What two bodies have as one-story buildings. */
+/* Quantities of two bodies as one-story buildings. */
 static void floors_of(const struct pound_runs_known *known, struct pound_pair_floors *out)
 {
 	const struct pound_scene *scene = known->scene;
@@ -30,7 +30,7 @@ static void floors_of(const struct pound_runs_known *known, struct pound_pair_fl
 
 /* The response of a sample in the units of the study.
  *
- * Returns  response  NAN where the scene has no such value
+ * Returns  response  NAN if the scene has no such value
  */
 enum pound_status pound_response_of(const struct pound_runs_known *known, struct pound_response *out)
 {
@@ -49,7 +49,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		if (body->status || (free && free->status))
 			status = body->status ? body->status : free->status;
 		backbone.yield = body->yield;
-		// without a run with pounding the body moves as it does alone; the wall does not
+		// without a run with pounding the response of the body alone is final; a wall does not move
 		bool alone = !known->pounding;
 		if (alone && free)
 			residual = fmax(residual, free->energy_residual);
@@ -64,7 +64,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		force[i] = ldexp(scene->oscillators[i].mass * pound_law_envelope(&backbone, most), e);
 		double given = pound_scene_law(scene, i)->yield_displacement;
 		yield[i] = !yields ? NAN : given > 0 ? given : ldexp(body->yield, e);
-		// a yield displacement that is given may be too small beside the motion to be expressed in its scale
+		// a given yield displacement may be too small to be represented in the scale of the motion
 		double per_yield = !yields || body->yield == 0 ? NAN : given > 0 ? given : body->yield;
 		demand[i] = ldexp(most / per_yield, given > 0 ? e : 0);
 		demand_free[i] = free ? ldexp(free->displacement_max[0] / per_yield, given > 0 ? e : 0) : NAN;
@@ -103,7 +103,7 @@ enum pound_status pound_response_of(const struct pound_runs_known *known, struct
 		status = status ? status : known->chain->status ? known->chain->status : known->chain_free->status;
 		floors_of(known, &out->floors);
 	}
-	// the motion in its own scale is finite, but not all that is made of it need be
+	// the scaled motion is finite, but derived quantities may overflow
 	bool beyond = isinf(out->relative_free);
 	for (size_t k = 0; k < sizeof out->floors / sizeof(double); k++)
 		beyond |= isinf(((const double *)(const void *)&out->floors)[k]) != 0;

@@ -1,4 +1,4 @@
-/* row_response.c - the response of a row of buildings, from its marches and as the numbers that are kept of it. */
+/* row_response.c - the response of a row of buildings, from its marches, and packed as doubles. */
 #include "engine/run/row_response.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "engine/run/row_runs.h"
 #include "engine/scene/law.h"
 
-/* before the storeys */
+/* indices before the stories */
 enum { HEAD_IMPULSE_SCALE, HEAD_ENERGY, HEAD_WORK_IN, HEAD };
 
 enum {
@@ -15,9 +15,9 @@ enum {
 	CONTACT_DOUBLES = sizeof(struct pound_contact_response) / sizeof(double),
 };
 
-/* ---- kept ---- */
+/* ---- packing ---- */
 
-/* The most storeys that a building has in any cell. */
+/* The largest number of stories of a building in any cell. */
 static int storeys_most(const struct pound_study *study, int b)
 {
 	const struct pound_field field = {.type = POUND_FIELD_COUNT,
@@ -78,7 +78,7 @@ void pound_row_trial(const struct pound_outcome *outcome, struct pound_trial_run
 		return;
 	trial->displacement = outcome->row->storeys[storeys - 1].displacement_max;
 	for (int i = 0; i < storeys; i++)
-		trial->demand = fmax(trial->demand, outcome->row->storeys[i].demand); // NAN where it has no value
+		trial->demand = fmax(trial->demand, outcome->row->storeys[i].demand); // NAN if undefined
 	trial->impulse = pound_row_impulse(outcome);
 }
 
@@ -94,11 +94,11 @@ double pound_row_impulse(const struct pound_outcome *outcome)
 
 /* ---- from marches ---- */
 
-/* What a storey is known by: rows of measures of its marches. */
+/* Data of a story: measures of its marches. */
 struct storey_known {
 	const double *with, *free; /* (POUND_FLOOR_MEASURES); free NULL: not run */
 	double yield;              /* [m] scaled; 0: none */
-	double given;              /* by the document [m]; 0: it is found */
+	double given;              /* by the study [m]; 0: found */
 	double height;             /* [m] */
 	int exponent;
 };
@@ -106,7 +106,7 @@ struct storey_known {
 static struct pound_storey_response storey_of(const struct storey_known *k)
 {
 	const int e = k->exponent;
-	// a yield drift that is given may be too small beside the motion to be expressed in its scale
+	// a given yield drift may be too small to be represented in the scale of the motion
 	const double per_yield = k->yield == 0 ? NAN : k->given > 0 ? k->given : k->yield;
 	const int per = k->given > 0 ? e : 0;
 	const double *with = k->with, *free = k->free;
@@ -138,7 +138,7 @@ static double without(const double *closing, enum pound_link_measure measure, in
 	return closing ? ldexp(closing[measure], e) : NAN;
 }
 
-/* Given    closing   its row of measures of the run without contact; NULL: not run */
+/* Given    closing   measures of the contact in the run without contact; NULL: not run */
 static struct pound_contact_response contact_of(const double *link, const double *closing, int e)
 {
 	return (struct pound_contact_response){
@@ -154,7 +154,7 @@ static struct pound_contact_response contact_of(const double *link, const double
 	    .level_free = {without(closing, POUND_LINK_LEFT_MAX, e), without(closing, POUND_LINK_RIGHT_MAX, e)}};
 }
 
-/* The storeys of one building; adds what is wrong with its marches. */
+/* Fills the stories of one building; returns the first failure of its marches. */
 static enum pound_status building_of(const struct pound_row_asks *asks, const struct pound_scene *scene,
                                      const struct pound_row_ask *ask, int b, int exponent,
                                      struct pound_row_response *row)
@@ -216,7 +216,7 @@ enum pound_status pound_row_response_of(const struct pound_row_asks *asks, const
 	for (int k = 0; k < contacts; k++)
 		asks->contacts[k] = contact_of(with ? with->links + k * POUND_LINK_MEASURES : open,
 		                               closing ? closing->links + k * POUND_LINK_MEASURES : NULL, exponent);
-	// the motion in its own scale is finite, but not all that is made of it need be
+	// the scaled motion is finite, but derived quantities may overflow
 	const bool over = beyond(&asks->storeys->drift_max, floors * STOREY_DOUBLES) ||
 	                  (contacts && beyond(&asks->contacts->impulse_max, contacts * CONTACT_DOUBLES));
 	return over && status == POUND_OK ? POUND_OVERFLOW : status;

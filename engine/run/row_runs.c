@@ -1,8 +1,8 @@
-/* row_runs.c - the runs that samples of a row of buildings need, each once.
+/* row_runs.c - the runs that samples of a row of buildings need, without duplicates.
  *
- * 1. Every building alone: linear, then with the yield drifts found by then, storey by storey.
- * 2. The row with pounding, unless the responses without it never close a gap, or all that touches moves alike.
- * 3. Tasks are laid one after another into pools; one that is there already, bit by bit, is not run again. */
+ * 1. Every building alone: linear, then with the yield drifts of its stories found so far.
+ * 2. The row with pounding, unless the responses without pounding never close a gap, or all neighbors move identically.
+ * 3. Tasks are stored one after another in pools; a task that is bitwise equal to an earlier one is not run again. */
 #include "engine/run/row_runs.h"
 #include "engine/run/scene.h"
 
@@ -22,7 +22,7 @@ static const double PI = 3.14159265358979323846;
 
 /* ---- sizes ---- */
 
-/* Work space of the marches of a scene: that of its contact model that takes most. */
+/* Scratch of the marches of a scene: the largest over its contact models. */
 static size_t march_scratch(const struct pound_scene *scene)
 {
 	size_t most = pound_chain_scratch(pound_contact_force(scene->contact.model));
@@ -33,7 +33,7 @@ static size_t march_scratch(const struct pound_scene *scene)
 	return most;
 }
 
-/* Adds what a sample of a scene takes at most.
+/* Adds the upper bounds of a sample of a scene.
  *
  * Given    outputs_asked   of enum pound_output_ask
  */
@@ -62,7 +62,7 @@ void pound_row_size_add(struct pound_row_size *size, const struct pound_scene *s
 	size->contacts = links > size->contacts ? links : size->contacts;
 }
 
-/* Adds what two oscillators take at most: with and without contact. */
+/* Adds the upper bounds of two oscillators, with and without contact. */
 void pound_row_size_add_pair(struct pound_row_size *size)
 {
 	size->tasks += 2;
@@ -94,7 +94,7 @@ static_assert(sizeof(struct pound_chain_floor) % sizeof(double) == 0 &&
                   sizeof(struct pound_link) % sizeof(double) == 0,
               "floors and links are read as doubles by the hash");
 
-/* Registers a task that lies at the end of the pools; equal ones have one number.
+/* Registers a task stored at the end of the pools; equal tasks share one number.
  *
  * Test     unit_row_results: equal_buildings_never_touch_with_force
  */
@@ -142,7 +142,7 @@ int pound_row_ask_pair(struct pound_row_asks *asks, const struct pound_task *pai
 	return task_ask(asks, motion, &task);
 }
 
-/* Longest length that is nothing beside the motion [m], scaled as the ground motion is. */
+/* Largest negligible length [m], in the scale of the ground motion. */
 static double negligible(const struct pound_scene *scene)
 {
 	double most = DBL_MIN;
@@ -157,13 +157,13 @@ static double negligible(const struct pound_scene *scene)
 	return 0x1p-90 / most;
 }
 
-/* The yield drift a march follows; any will do for a storey that never moves. */
+/* The yield drift used in a march, limited to a resolvable range; 1 (arbitrary) for a story that never moves. */
 static double yield_marched(double least, double yield)
 {
 	return yield > 0 ? fmin(fmax(yield, least), 1 / DBL_EPSILON / DBL_EPSILON) : 1;
 }
 
-/* The matrix of damping in every mode, that of the building before it in this place if they are alike. */
+/* The modal damping matrix; reuses the matrix of the last building at this position if both are equal. */
 static const double *modal_lay(struct pound_row_asks *asks, const struct pound_building *building, int b,
                                const struct pound_storeys *storeys)
 {
@@ -178,7 +178,7 @@ static const double *modal_lay(struct pound_row_asks *asks, const struct pound_b
 	return matrix;
 }
 
-/* Lays the floors of a building; yields NULL: linear. */
+/* Fills the floors of a building; yields NULL: linear. */
 static void building_lay(struct pound_row_asks *asks, const struct pound_scene *scene, int b,
                          const double *yields, struct pound_chain_floor *floors)
 {
@@ -187,7 +187,7 @@ static void building_lay(struct pound_row_asks *asks, const struct pound_scene *
 	struct pound_storeys storeys;
 	pound_building_storeys(&scene->buildings[b], &storeys);
 	const double *modal = storeys.modal ? modal_lay(asks, &scene->buildings[b], b, &storeys) : NULL;
-	memset(floors, 0, sizeof *floors * (size_t)storeys.n); // compared bit by bit
+	memset(floors, 0, sizeof *floors * (size_t)storeys.n); // compared bitwise
 	for (int i = 0; i < storeys.n; i++) {
 		floors[i].mass = storeys.mass[i];
 		floors[i].dashpot = storeys.dashpot[i];
@@ -264,7 +264,7 @@ static bool may_miss(const struct pound_scene *scene)
 	return gaps;
 }
 
-/* What a sample needs without pounding, to begin with. */
+/* Initializes the runs of a sample without pounding. */
 void pound_row_ask_free(struct pound_row_asks *asks, const struct pound_scene *scene,
                         struct pound_row_ask *ask, bool response, unsigned asked)
 {
@@ -292,7 +292,7 @@ int pound_row_stages(const struct pound_scene *scene)
 	return stages;
 }
 
-/* The yield drifts of a building, found from the march before or given. */
+/* Sets the yield drifts of a building: given, or found from the previous march. */
 static void yields_find(const struct pound_row_asks *asks, const struct pound_scene *scene, int b,
                         struct pound_row_ask *ask, int exponent, int stage)
 {
@@ -315,7 +315,7 @@ static void yields_find(const struct pound_row_asks *asks, const struct pound_sc
 		yields[i] = before->floors[i * POUND_FLOOR_MEASURES + POUND_FLOOR_DRIFT_MAX] / over;
 }
 
-/* a stage of a row's ask */
+/* a stage of a sample's runs */
 struct row_stage {
 	const struct pound_scene *scene;
 	struct pound_row_ask *ask;
@@ -323,10 +323,10 @@ struct row_stage {
 	int stage;
 };
 
-/* Asks for a building's march of a stage.
+/* Requests a building's march of a stage.
  *
  * Returns  value   false: none is needed
- *          work    what was left out is counted
+ *          work    counts skipped marches
  */
 static bool building_stage(struct pound_row_asks *asks, const struct row_stage *of, int b,
                            struct pound_work *work)
@@ -371,7 +371,7 @@ int pound_row_stage(struct pound_row_asks *asks, const struct pound_scene *scene
 
 /* ---- with pounding ---- */
 
-/* The floors that a level is between, among all of a row, and their weights.
+/* The floors below and above a level, as indices in the row, and their weights.
  *
  * Source   the project's design pages, buildings.md 1: the column between two floors is straight and has no mass
  */
@@ -387,7 +387,7 @@ static void level_place(const struct pound_scene *scene, int b, double level, in
 	floor[0] = upper > 1 ? floor[1] - 1 : POUND_CHAIN_GROUND;
 }
 
-/* The storey of a building that holds a level: its initial stiffness; 0 of a wall. */
+/* Initial stiffness of the story of a building at a level; 0 for a wall. */
 static double stiffness_at(const struct pound_scene *scene, const struct pound_chain_floor *floors, int b,
                            double level)
 {
@@ -396,12 +396,12 @@ static double stiffness_at(const struct pound_scene *scene, const struct pound_c
 	return floors[pound_row_first(scene, b) + (int)ceil(level) - 1].story.stiffness;
 }
 
-/* Lays contact k of a row whose floors are laid; its gap is scaled. */
+/* Fills contact k of a row whose floors are filled; its gap is scaled. */
 static void link_lay(const struct pound_scene *scene, int k, const struct pound_chain_floor *floors,
                      int exponent, struct pound_link *link)
 {
 	struct pound_row_contact contact;
-	double stiffness = 0, compliance = 0; // larger stiffness beside, 1 over the effective mass
+	double stiffness = 0, compliance = 0; // larger adjacent stiffness, 1 over the effective mass
 	pound_row_contact_of(scene, k, &contact);
 	memset(link, 0, sizeof *link);
 	for (int side = 0; side < 2; side++) {
@@ -437,7 +437,7 @@ static bool misses(const struct pound_row_asks *asks, const struct pound_scene *
 	return link->gap > 0 && reach < link->gap;
 }
 
-/* Whether two buildings move alike under any ground motion: the same floors, yield drifts given alike. */
+/* Whether two buildings move identically under any ground motion: equal floors, including yield drifts. */
 static bool buildings_alike(const struct pound_scene *scene, const struct pound_chain_floor *floors, int a,
                             int b)
 {
@@ -459,7 +459,7 @@ static bool row_alike(const struct pound_scene *scene, const struct pound_chain_
 	return alike;
 }
 
-/* Lays all buildings, with the yield drifts that are known. */
+/* Fills the floors of all buildings, with the known yield drifts. */
 static void row_lay(struct pound_row_asks *asks, const struct pound_scene *scene,
                     const struct pound_row_ask *ask, struct pound_chain_floor *floors)
 {
@@ -471,7 +471,7 @@ static void row_lay(struct pound_row_asks *asks, const struct pound_scene *scene
 	}
 }
 
-/* Asks for the run of all buildings together without contact.
+/* Requests the run of all buildings together without contact.
  *
  * Test     unit_outputs: the_gap_needed_decides_which_signals_pound_in_rows
  */
@@ -496,7 +496,7 @@ void pound_row_ask_closing(struct pound_row_asks *asks, const struct pound_scene
 	ask->closing = task_ask(asks, motion, &task);
 }
 
-/* Asks for the run with pounding, unless the responses without it are the answer. */
+/* Requests the run with pounding, unless the responses without pounding are final. */
 void pound_row_ask_pounding(struct pound_row_asks *asks, const struct pound_scene *scene,
                             struct pound_row_ask *ask, const struct pound_motion *motion,
                             struct pound_work *work)

@@ -1,8 +1,8 @@
-/* run.c - a study being computed: its memory, its blocks, its reductions.
+/* run.c - the computation of a study: its memory, its blocks, its reductions.
  *
- * 1. create lays out everything: the design, the blocks (ranges of items, see blocks.h), a request for each worker;
+ * 1. create allocates everything: the design, the blocks (ranges of items, see blocks.h), a request for each worker;
  * 2. a block writes the measures of its runs into its own slice of `values`;
- * 3. a reduction turns the measures of one cell and output into its place of the result. */
+ * 3. a reduction computes the result of one cell and output from the measures. */
 #include <assert.h>
 #include <math.h>
 #include <stdatomic.h>
@@ -23,14 +23,14 @@
 enum {
 	MEASURES = offsetof(struct pound_response, floors) / sizeof(double),
 	COUNTS = sizeof(struct pound_work) / sizeof(int64_t),
-	CHECK_EVERY = 100, /* items between two checked ones */
-	CHECKED_MIN = 8,   /* runs of a cell to check at least, if it has them */
-	COLUMNS = POUND_N_INDICES + POUND_N_NAMED + POUND_CURVE, /* of estimates for each input */
+	CHECK_EVERY = 100, /* distance of checked items */
+	CHECKED_MIN = 8,   /* least number of checked runs per cell, if it has so many */
+	COLUMNS = POUND_N_INDICES + POUND_N_NAMED + POUND_CURVE, /* estimates per input */
 };
 
-/* ---- life ---- */
+/* ---- creation ---- */
 
-/* Doubles kept of a response. */
+/* Doubles kept per response. */
 static int response_measures(const struct pound_study *study)
 {
 	const size_t all = sizeof(struct pound_response) / sizeof(double);
@@ -39,7 +39,7 @@ static int response_measures(const struct pound_study *study)
 	                                                       : (int)MEASURES;
 }
 
-/* The scenes of a study; its design is not drawn yet. */
+/* The scenes of a study, without its design. */
 struct pound_cells pound_run_campaign(const struct pound_study *study)
 {
 	bool sampled = pound_study_sampled(study), trials = study->kind == POUND_KIND_CONVERGENCE;
@@ -62,7 +62,7 @@ struct pound_cells pound_run_campaign(const struct pound_study *study)
 	return c;
 }
 
-/* What its blocks hold; they are not cut yet. */
+/* The contents of the blocks, before the items are cut into blocks. */
 struct pound_blocks pound_run_layout(const struct pound_cells *campaign)
 {
 	const struct pound_study *study = campaign->study;
@@ -95,8 +95,8 @@ static size_t kept_size(const struct pound_cells *c)
 	return pound_chaos_expansion_kept_size(&shape);
 }
 
-/* Doubles a reduction works in: what is kept, two columns of measures, the checks, and what the indices and then their
- * accuracy need. */
+/* Scratch of a reduction in doubles: kept factors, two columns of measures, the checks, and the scratch of the indices or of
+ * their accuracy. */
 size_t pound_run_reduction_size(const struct pound_cells *c)
 {
 	if (c->study->kind == POUND_KIND_FLOOR_SPECTRUM)
@@ -116,21 +116,21 @@ size_t pound_run_reduction_size(const struct pound_cells *c)
 	size_t accuracy = (size_t)checks_of(c);
 	size_t ordinates = pound_ordinate_scratch(c->study, c->n_rows);
 	size_t most = variants > accuracy ? variants : accuracy;
-	// what is kept is not to be written over
+	// the kept factors must not be overwritten
 	const size_t whole = 2 * pound_cells_values_size(c, c->n_rows) + checks_size(c) +
 	                     (most > ordinates ? most : ordinates),
 	             separation = pound_separation_scratch(c);
 	return kept_size(c) + (whole > separation ? whole : separation);
 }
 
-/* Allocates work space, 64-byte aligned; NULL: out of memory.  It is not cleared, as a small study touches little of it: for
- * those alone who read nothing that they have not written. */
+/* Allocates scratch memory, 64-byte aligned; NULL: out of memory.  It is not zeroed, because a small study touches little of
+ * it: only for users that write before they read. */
 static void *room(size_t bytes)
 {
 	return aligned_alloc(64, (bytes / 64 + 1) * 64);
 }
 
-/* Allocates one piece of zeroed memory, 64-byte aligned; NULL: out of memory. */
+/* Allocates zeroed memory, 64-byte aligned; NULL: out of memory. */
 static void *piece(size_t bytes)
 {
 	void *memory = room(bytes);
@@ -149,7 +149,7 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 	for (int w = 0; w < n_workers; w++) {
 		void *memory = room(pound_request_bytes(largest));
 		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
-		// cleared: it begins with what pound_chaos_expansion_kept_size() asks zeros for
+		// zeroed, because it begins with the factors of pound_chaos_expansion_kept_size()
 		run->scratch[w] = piece(sizeof(double) * pound_run_reduction_size(&run->campaign));
 		memory = spectra ? room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, tasks) : NULL;
@@ -159,7 +159,7 @@ static bool workers_create(struct pound_run *run, int n_workers, struct pound_re
 	return true;
 }
 
-/* The memory of the result, piece by piece. */
+/* The memory blocks of the result. */
 void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[POUND_RUN_PARTS])
 {
 	const struct pound_cells *c = &run->campaign;
@@ -220,13 +220,13 @@ static bool result_create(struct pound_run *run)
 
 static bool suite_scale(struct pound_run *run, const atomic_bool *stop)
 {
-	void *scratch = piece(pound_run_scale_bytes(run->campaign.study)); // for this alone
+	void *scratch = piece(pound_run_scale_bytes(run->campaign.study)); // temporary
 	const bool scaled = scratch && pound_run_scale(run, scratch, stop);
 	free(scratch);
 	return scaled;
 }
 
-/* The number of signals of a study that leaves it open; false: no memory, or stop was set. */
+/* Chooses the number of signals of a split study by a pilot; false: no memory, or stop was set. */
 static bool pilot_run(struct pound_run *run, const atomic_bool *stop)
 {
 	const struct pound_study study = pound_pilot_study(&run->study);
@@ -245,9 +245,9 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 	return pound_run_create_by(study, n_workers, NULL);
 }
 
-/* A study laid out to be computed by n_workers threads; allocates all it will ever need.
+/* Prepares a study for n_workers threads; allocates all memory of the run.
  *
- * Given    stop    looked at while the design is drawn; NULL: never
+ * Given    stop    checked while the design is drawn; NULL: never
  * Returns  value   NULL: out of memory, or stop was set
  * Test     unit_stop: what_takes_long_ends_soon_when_it_is_stopped
  */
@@ -390,7 +390,7 @@ struct slice {
 	double *at; /* the next run's measures */
 };
 
-/* Keeps of a response what the study's outputs need; NAN for a failed run. */
+/* Stores the measures of a response that the study's outputs need; NAN for a failed run. */
 static void response_keep(void *into, const struct pound_outcome *outcome)
 {
 	struct slice *slice = into;
@@ -432,7 +432,7 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 			slice->at[0] = slice->at[1] = NAN;
 	}
 	int n = pound_ordinate_measures(slice->study);
-	for (int j = 0; j < n; j++) // spectra come later
+	for (int j = 0; j < n; j++) // spectra are filled in later
 		*slice->at++ = status               ? NAN
 		               : scene->n_buildings ? pound_row_impulse(outcome)
 		                                    : response->impulse_max / scene->oscillators[0].mass;
@@ -440,8 +440,8 @@ static void response_keep(void *into, const struct pound_outcome *outcome)
 
 /* Computes a block into its slice of the values.
  *
- * Status   POUND_STOPPED  pound_run_stop was called; the block's values are not to be used
- *          POUND_NOMEM    there was no memory for a run, so too; it may be tried again
+ * Status   POUND_STOPPED  pound_run_stop was called; the block's values must not be used
+ *          POUND_NOMEM    no memory for a run; values must not be used either; the block may be tried again
  */
 enum pound_status pound_run_block(struct pound_run *run, int block, int worker)
 {
@@ -472,7 +472,7 @@ static bool has_indices(const struct pound_run *run)
 	return pound_study_sampled(run->campaign.study);
 }
 
-/* One for each output of each cell; one for all trials, one for all spectra, one for all gaps needed, which is the last. */
+/* One per output and cell; one for all trials, one for all spectra; one for all gaps needed, the last. */
 int pound_run_reductions(const struct pound_run *run)
 {
 	if (run->campaign.trials || run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
@@ -503,7 +503,7 @@ int64_t pound_run_columns(const struct pound_run *run, int cell, int output, dou
 	return failed;
 }
 
-/* The runs of an output in a cell that were made twice; returns how many. */
+/* The checked runs of an output in a cell; returns how many. */
 static int checks_fill(const struct pound_run *run, int cell, int output, struct pound_check *checks)
 {
 	const struct pound_cells *c = &run->campaign;
@@ -535,7 +535,7 @@ struct pound_sampling pound_run_sampling(const struct pound_run *run)
 	return (struct pound_sampling){
 	    .u = run->u,
 	    .random = study->elsewhere || random,
-	    // in a scene without random signals samples of a row have no noise to share, in whatever order they are run
+	    // in a scene without random signals the samples of a row have no noise to share
 	    .fresh_signals = !study->design.common_signals || (study->elsewhere && !random),
 	    .n_resamples = study->design.resamples,
 	    .quasi_random = pound_design_quasi_random(study->design.method),
@@ -565,7 +565,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	    pound_index_columns_indices(&values, &sampling, c->study->design.seed, rest, &into->indices[output]);
 	if (pound_stopped(run->stop))
 		return;
-	// replicates of a model of one's own are fresh by their nature
+	// the note on common signals does not apply to replicates of a user's model
 	if (c->study->elsewhere)
 		into->indices[output].notes &= ~(1u << POUND_NOTE_FRESH_SIGNALS);
 	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
@@ -576,12 +576,12 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	}
 }
 
-/* Ratio of means over the signals whose run has a result. */
+/* Ratio of means over the signals with a result. */
 static void responses_reduce(struct pound_run *run, int cell, int output, void *row_memory)
 {
 	const struct pound_cells *c = &run->campaign;
 	struct pound_cell *into = &run->result.cells[cell];
-	// the storeys of a row, which a sweep may vary, say where its measures are
+	// the layout of the measures depends on the number of stories, which a sweep may vary
 	struct pound_scene scene = pound_cells_scene(c, cell, 0, 0, row_memory);
 	double above = 0, below = 0;
 	for (int signal = 0; signal < c->n_signals; signal++) {
@@ -617,7 +617,7 @@ static struct pound_work work_of(const struct pound_run *run)
 	return work;
 }
 
-/* The status of most runs where none has a result, POUND_OK where one has. */
+/* POUND_OK if any run has a result, else the most frequent failure. */
 static enum pound_status nothing_left(const struct pound_run *run)
 {
 	struct pound_work work = work_of(run);
@@ -632,10 +632,10 @@ static enum pound_status nothing_left(const struct pound_run *run)
 	           : (enum pound_status)(POUND_CHATTER - most);
 }
 
-/* Computes one output of one cell, once all blocks are done; the first also looks whether there is anything to reduce.
+/* Computes one output of one cell, after all blocks are done; the first reduction also checks that any run has a result.
  *
  * Status   POUND_STOPPED  pound_run_stop was called
- *          that of runs   no run of the study has a result, most of them for this reason
+ *          run status     no run of the study has a result; the most frequent failure
  * Test     unit_status: a_study_without_a_result_ends_with_the_reason_of_its_runs
  */
 enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int worker)
@@ -660,7 +660,7 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 	return pound_stopped(run->stop) ? POUND_STOPPED : POUND_OK;
 }
 
-/* The result, once all reductions are done; owned by run. */
+/* The result, after all reductions are done; owned by run. */
 const struct pound_result *pound_run_result(struct pound_run *run)
 {
 	const struct pound_cells *c = &run->campaign;

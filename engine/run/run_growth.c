@@ -1,17 +1,17 @@
-/* run_growth.c - a design that grows until every interval that was asked for is narrow, and results of its first rows.
+/* run_growth.c - a design that grows until every interval that counts is narrow, and results of its first rows.
  *
- * 1. After each look's reductions the widest interval that counts is sought, over all cells, outputs and inputs: of S1 and
- *    ST, or of an ST whose interval overlaps another input's, so that their order is not certain.
- * 2. It alone decides; growing further waits for it.
+ * 1. Each look (interim analysis) finds, after its reductions, the widest interval that counts over all cells, outputs and
+ *    inputs: of S1 and ST, or of an ST whose interval overlaps another input's, so that their order is not certain.
+ * 2. The design grows as long as this interval is too wide.
  *
- * Looking again and again at a design of 10 batches or more, or of nets that double, leaves the intervals at the stop the
- * coverage they have anyway: tests/unit/run/unit_growth.c, and make statistics at length. */
+ * Repeated looks at a design of 10 batches or more, or of Sobol' sequences that double, do not reduce the coverage of the
+ * final intervals: tests/unit/run/unit_growth.c, and make statistics in detail. */
 #include "engine/run/run.h"
 
 #include <assert.h>
 #include <math.h>
 
-/* Looks at the intervals when the design grows to its end. */
+/* Number of looks if the design grows to its end. */
 int pound_run_looks_most(const struct pound_study *study)
 {
 	int looks = 0, most = pound_design_rows_most(study);
@@ -22,7 +22,7 @@ int pound_run_looks_most(const struct pound_study *study)
 	return looks;
 }
 
-/* Whether an interval of ST overlaps that of another input; one without an end does. */
+/* Whether an interval of ST overlaps another input's; an undefined interval does. */
 static bool overlaps(const struct pound_estimate *total, int n_inputs, int input)
 {
 	for (int j = 0; j < n_inputs; j++)
@@ -50,7 +50,7 @@ static void widen(struct pound_look *widest, const struct pound_look *at, const 
 		}
 }
 
-/* Whether a design waits for an output of a scene. */
+/* Whether the intervals of an output of a scene count. */
 static bool awaited(const struct pound_study *study, int output, const struct pound_scene *scene)
 {
 	const int one = study->design.until.output;
@@ -61,10 +61,10 @@ static bool awaited(const struct pound_study *study, int output, const struct po
 /* The widest interval that counts.
  *
  * Given    cells       (of the study)    reduced
- * Returns  value       -                 all but the rows; of several as wide the first
+ * Returns  value       -                 all members except rows; the first of several equally wide ones
  *
- * An output that is the same for every row has no indices, and none is waited for; an index without an interval for any
- * other reason is as wide as can be.  -1: there is none to wait for.
+ * A constant output has no indices and does not count; an index without an interval for any other reason has infinite
+ * width.  Half width -1: no interval counts.
  *
  * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
  */
@@ -84,9 +84,9 @@ static struct pound_look widest_of(const struct pound_cells *campaign, const str
 	return widest;
 }
 
-/* Looks at the intervals, once all reductions are done.
+/* Checks the intervals after all reductions.
  *
- * Returns  value   the design grows: there are more blocks, and all reductions are to be made again
+ * Returns  value   true: the design grows: there are more blocks, and all reductions must be repeated
  * Test     unit_growth: a_design_stops_at_the_first_look_that_finds_every_interval_narrow
  */
 bool pound_run_grow(struct pound_run *run)
@@ -103,9 +103,9 @@ bool pound_run_grow(struct pound_run *run)
 	return grows;
 }
 
-/* How many rows at the start of the design are complete.
+/* Number of complete rows at the start of the design.
  *
- * Given    done    (pound_run_blocks_most)    blocks that were run or restored
+ * Given    done    (pound_run_blocks_most)    blocks run or restored
  * Test     unit_growth: an_intermediate_result_has_whole_rows_only
  */
 int pound_run_rows_done(const struct pound_run *run, const bool *done)
@@ -116,7 +116,7 @@ int pound_run_rows_done(const struct pound_run *run, const bool *done)
 	return run->layout.first[blocks] / run->campaign.n_signals;
 }
 
-/* Takes the first rows of the design for the design, in the reductions and the result to come. */
+/* Restricts the following reductions and the result to the first rows of the design. */
 void pound_run_rows_take(struct pound_run *run, int rows)
 {
 	assert(pound_study_sampled(run->campaign.study) && rows <= run->campaign.n_rows);

@@ -1,12 +1,12 @@
-/* run_memory.c - what a study being computed takes of memory, before anything is allocated. */
+/* run_memory.c - memory of the computation of a study, before anything is allocated. */
 #include "engine/run/floor_outputs.h"
 #include "engine/run/outputs.h"
 #include "engine/run/run.h"
 
-/* Memory of a run, as pound_run_create lays it out, without what it leaves untouched.
+/* Memory of a run as laid out by pound_run_create, without allocated but untouched memory.
  *
  * Given    n_workers   -
- *          shared      what an item has of which nothing is run twice
+ *          shared      work of an item without duplicates
  * Returns  value       bytes
  * Test     service_estimates: the_memory_of_a_study_is_estimated
  */
@@ -25,7 +25,7 @@ double pound_run_bytes(const struct pound_study *study, int n_workers, const str
 	pound_run_result_parts(&run, parts);
 	for (int j = 0; j < POUND_RUN_PARTS; j++)
 		bytes += (double)parts[j].bytes;
-	// a row of buildings has tasks of its own
+	// a row of buildings has its own kind of tasks
 	if (study->scene.n_buildings)
 		item.tasks = 0;
 	item.peaks = asked & POUND_ASKS_FREE_PAIR ? item.tasks : 0;

@@ -1,4 +1,4 @@
-/* run_samples.c - the samples of a study's design: what goes in, their ground motions, what came out. */
+/* run_samples.c - the samples of a study's design: inputs, ground motions, outputs. */
 #include <assert.h>
 #include <math.h>
 
@@ -34,7 +34,7 @@ int pound_run_motion_samples(const struct pound_run *run, const struct pound_pla
 	return pound_excitation_samples(&excitation);
 }
 
-/* The ground motion of a signal, made as for its runs.
+/* The ground motion of a signal, generated as for its runs.
  *
  * Test     unit_motions: motions_are_those_of_the_runs
  */
@@ -57,7 +57,7 @@ struct pound_sample_output pound_run_sample_output(const struct pound_run *run, 
 		const double *values = pound_blocks_run(&run->layout, row, cell, sample) + 2 * output;
 		return (struct pound_sample_output){values[0], values[1]};
 	}
-	// the runs of a row's signals are one item from each other, but a block may end between them
+	// the signals of a row are successive items, but may be in different blocks
 	double above = 0, below = 0;
 	for (int r = 0; r < c->n_signals; r++) {
 		const double *values =

@@ -1,4 +1,4 @@
-/* run_suite.c - a study under a suite of records: these scaled once, and which of them its signals are. */
+/* run_suite.c - a study under a suite of records: scaling of the records, and the record of each signal. */
 #include "engine/run/run.h"
 #include "engine/run/suite_references.h"
 
@@ -27,10 +27,10 @@ static struct pound_scene middle_scene(const struct pound_study *study)
 	return scene;
 }
 
-/* Scales the records of a suite, if they are to be scaled, and looks how well they are sampled.
+/* Computes the references of a scaled suite, and checks the sampling of its records.
  *
  * Given    scratch   (pound_run_scale_bytes)
- * Returns  run       references, also of its result, and differences
+ * Returns  run       references and differences, also in its result
  *          value     false: stop was set
  */
 bool pound_run_scale(struct pound_run *run, void *scratch, const atomic_bool *stop)

@@ -1,4 +1,4 @@
-/* scene.c - reading and varying the scene of a study, and dividing it by masses for the march. */
+/* scene.c - reading and varying the scene of a study, and dividing it by masses for the solver. */
 #include "engine/run/scene.h"
 #include "engine/ground/excitation.h"
 #include "engine/scene/contact.h"
@@ -15,7 +15,7 @@ const struct pound_law *pound_scene_law(const struct pound_scene *scene, int osc
 	return o->has_law ? &o->law : &scene->law;
 }
 
-/* The memory of a field. */
+/* The address of a field. */
 static void *field_at(const struct pound_scene *scene, struct pound_field field)
 {
 	void *const parts[] = {[POUND_PART_SCENE] = (void *)scene,
@@ -29,7 +29,7 @@ double pound_each_of(const struct pound_each *each, int i)
 	return each->values[each->n == 1 ? 0 : i];
 }
 
-/* Gives one storey, or all of them, a number. */
+/* Sets the number of one story, or of all (storey 0). */
 static void each_assign(struct pound_each *each, int storey, double value)
 {
 	for (int i = 0; i < POUND_STOREYS_MAX && storey > 0 && each->n == 1; i++)
@@ -38,7 +38,7 @@ static void each_assign(struct pound_each *each, int storey, double value)
 	each->values[storey == 0 ? 0 : storey - 1] = value;
 }
 
-/* A member that varies is the contact's own from then on. */
+/* Marks a varied member as the contact's own. */
 static void own_assign(struct pound_scene *scene, struct pound_field field)
 {
 	static const size_t sizes[] = {[POUND_FIELD_REAL] = sizeof(double),
@@ -52,9 +52,9 @@ static void own_assign(struct pound_scene *scene, struct pound_field field)
 		memset(contact->own + (at - start), 1, sizes[field.type]);
 }
 
-/* Writes a varied value into the field of a scene, whatever the field holds.
+/* Writes a varied value into the field of a scene, converted to the field's type.
  *
- * Given    field    of a building or a contact: the scene has them for itself
+ * Given    field    of a building or a contact: the scene must own its buildings and contacts
  * Test     unit_row_results: what_a_sweep_varies_is_what_a_document_says
  */
 void pound_scene_assign(struct pound_scene *scene, struct pound_field field, double value)
@@ -93,10 +93,10 @@ bool pound_field_overlaps(struct pound_field a, struct pound_field b)
 	       (a.storey == b.storey || a.storey == 0 || b.storey == 0);
 }
 
-/* Oscillator i as the march takes it, at rest; its yield displacement is still to be set.
+/* Oscillator i as input of the solver, at rest; the caller sets its yield displacement.
  *
  * Given    scene, i
- * Returns  body      stiffness w^2 [1/s2], damping 2 xi w [1/s]; a rigid wall stays where the ground is
+ * Returns  body      stiffness w^2 [1/s2], damping 2 xi w [1/s]; a rigid wall does not move relative to the ground
  * Source   model.md 1
  */
 struct pound_task_body pound_scene_body(const struct pound_scene *scene, int i)
@@ -117,7 +117,7 @@ struct pound_task_body pound_scene_body(const struct pound_scene *scene, int i)
  *
  * Returns  task  gap [m], the law over m1, m1/m2 (0: wall)
  *
- *   m = m1 m2/(m1 + m2), a wall counting as infinite; the larger stiffness beside the contact is max(k1, k2)
+ *   m = m1 m2/(m1 + m2), with infinite mass of a wall; the reference stiffness of the contact is max(k1, k2)
  *
  * Source   model.md 1; the paper, Eq. (1)
  */
@@ -144,7 +144,7 @@ void pound_scene_contact(const struct pound_scene *scene, struct pound_task *tas
 	task->contact_damping = task->law.dashpot;
 }
 
-/* Whether two laws are the same law with the same numbers; a linear law has none. */
+/* Whether two laws are the same law with the same parameters; a linear law has none. */
 static bool laws_alike(const struct pound_law *a, const struct pound_law *b)
 {
 	if (a->type != b->type)
@@ -154,7 +154,7 @@ static bool laws_alike(const struct pound_law *a, const struct pound_law *b)
 	        a->yield_displacement == b->yield_displacement && a->corrections == b->corrections);
 }
 
-/* Whether two oscillators move alike under any ground motion, so that they never touch with force. */
+/* Whether two oscillators move identically under any ground motion, so that they never touch with force. */
 bool pound_scene_alike(const struct pound_scene *scene)
 {
 	const struct pound_oscillator *o = scene->oscillators;
@@ -162,7 +162,7 @@ bool pound_scene_alike(const struct pound_scene *scene)
 	       o[0].frequency_hz == o[1].frequency_hz && o[0].damping_ratio == o[1].damping_ratio;
 }
 
-/* Reduction of the elastic displacement that gives the wanted demand, by the ratio of excitation to own frequency.
+/* Reduction of the elastic displacement that gives the target demand, by the ratio of excitation to own frequency.
  *
  *   q_y = mu_d where f_e/f >= 1/6, else 1 + (mu_d - 1) 6 f_e/f
  *

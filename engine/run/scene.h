@@ -1,4 +1,4 @@
-/* scene.h - a scene divided by masses, as the march takes it. */
+/* scene.h - a scene divided by masses, as input of the solver. */
 #ifndef SCENE_H
 #define SCENE_H
 

@@ -1,8 +1,8 @@
-/* separation_outputs.c - from the runs of a study of separation to the gaps needed.
+/* separation_outputs.c - gaps needed, from the runs of a separation study.
  *
- * A run counts as often as it is one of matrix A or B of a design, or a signal without a design: only these are drawn at random.
- * Runs of a row of the design are a cluster, as they share ground motions or structures; without a design every signal is one, and
- * both directions of a record together are. */
+ * With a design only the runs of matrices A and B count, without a design all signals: only these are random draws.
+ * The runs of a design row are a cluster, because they share ground motions or structures; without a design every signal is a
+ * cluster, or both directions of a record together. */
 #include "engine/run/separation_outputs.h"
 
 #include <math.h>
@@ -12,9 +12,9 @@
 #include "engine/separation/separation.h"
 
 enum {
-	GAPS_ROUND = 40, /* gaps at most that the study does not name, beside 0 */
+	GAPS_ROUND = 40, /* largest number of automatic gaps, besides 0 */
 	MATRICES = 2,    /* A and B */
-	// the study's own outputs, each once for every contact; without the last the right body is a wall
+	// the first outputs, each once per contact; without RIGHT the right body is a wall
 	GAP = 0,
 	LEFT = 1,
 	RIGHT = 2,
@@ -65,20 +65,20 @@ static int gaps_most(const struct pound_study *study)
 	return study->separation.n_gaps ? study->separation.n_gaps : GAPS_ROUND + 1;
 }
 
-/* The runs of all stripes, and as many sorted. */
+/* Doubles for the runs of all stripes, and for their sorted copy. */
 static size_t numbers_of(const struct pound_cells *c)
 {
 	return 2 * runs_of(c) * (size_t)stripes_of(c->study);
 }
 
-/* These and the buildings of a scene. */
+/* The same plus the buildings of a scene. */
 size_t pound_separation_scratch(const struct pound_cells *campaign)
 {
 	const size_t row = pound_row_bytes(&campaign->study->scene);
 	return separates(campaign) ? numbers_of(campaign) + (row + sizeof(double) - 1) / sizeof(double) : 0;
 }
 
-/* Carves the parts of the result out of memory, or with memory NULL only counts the bytes. */
+/* Points the parts of the result into memory; memory NULL: only counts the bytes. */
 static size_t carve(const struct pound_cells *c, char *memory, struct pound_separation_result *result)
 {
 	const struct pound_separation *asked = &c->study->separation;
@@ -125,7 +125,7 @@ void pound_separation_layout(const struct pound_cells *campaign, void *memory,
 
 /* ---- gaps needed ---- */
 
-/* Two numbers of a run whose ratio of means an output is. */
+/* Numerator and denominator of an output of a run. */
 static const double *run_values(const struct pound_run *run, int cell, int row, int sample, int signal,
                                 int output)
 {
@@ -137,7 +137,7 @@ static int samples_counted(const struct pound_run *run)
 	return pound_study_sampled(run->campaign.study) ? MATRICES : 1;
 }
 
-/* The number of one of the study's own outputs at a contact. */
+/* The number of output GAP, LEFT or RIGHT at a contact. */
 static int own(const struct pound_run *run, int output, int contact)
 {
 	return output * pound_study_gaps(run->campaign.study) + contact;
@@ -156,7 +156,7 @@ static struct pound_needed needed_of(const struct pound_run *run, int cell, int 
 	    .n_clusters = clusters_of(c, run->rows), .size = cluster_size(c), .gap = gap};
 }
 
-/* Mean, scatter and the largest of the gaps needed. */
+/* Mean, standard deviation and maximum of the gaps needed. */
 static void moments(const struct pound_needed *needed, struct pound_needs *needs)
 {
 	const size_t n = (size_t)needed->n_clusters * (size_t)needed->size;
@@ -179,13 +179,13 @@ static void moments(const struct pound_needed *needed, struct pound_needs *needs
 
 /* ---- rules ---- */
 
-/* a structure of a cell: a row of the design and a sample of it */
+/* a structure of a cell: a row of the design and a sample of the row */
 struct structure {
 	const struct pound_run *run;
 	int cell, row, sample;
 };
 
-/* Means over the signals of a structure of the largest displacements on both sides of a contact; how many signals have a result. */
+/* Means over the signals of a structure of the peak displacements on both sides of a contact; returns how many are valid. */
 static int displacements_of(const struct structure *s, int contact, double mean[POUND_OSCILLATORS])
 {
 	const struct pound_run *run = s->run;
@@ -205,7 +205,7 @@ static int displacements_of(const struct structure *s, int contact, double mean[
 	return n;
 }
 
-/* frequencies and damping of first modes of the bodies of a scene; 0: a wall */
+/* frequencies and damping ratios of the first modes of a scene's bodies; 0: a wall */
 struct first_modes {
 	double frequency[POUND_BUILDINGS_MAX], damping[POUND_BUILDINGS_MAX];
 };
@@ -224,7 +224,7 @@ static void first_modes_of(const struct pound_scene *scene, struct first_modes *
 	}
 }
 
-/* Adds what the rules ask for at all contacts of a structure; false: no signal has a result. */
+/* Adds the gaps of the rules at all contacts of a structure; false: no signal has a result. */
 static bool rules_add(const struct structure *s, struct pound_needs *needs, void *row_memory)
 {
 	const struct pound_scene scene =
@@ -251,7 +251,7 @@ static bool rules_add(const struct structure *s, struct pound_needs *needs, void
 	return any;
 }
 
-/* What the rules ask for: of each structure by the means over its signals, and the mean of that over the structures. */
+/* Gaps of the rules: for each structure from the means over its signals, then the mean over the structures. */
 static void rules_apply(const struct pound_run *run, int cell, struct pound_needs *needs, void *row_memory)
 {
 	const int gaps = pound_study_gaps(run->campaign.study);
@@ -275,7 +275,7 @@ static void rules_apply(const struct pound_run *run, int cell, struct pound_need
 
 /* ---- a study ---- */
 
-/* A whole number times a power of ten, rounded once. */
+/* An integer times a power of ten, rounded once. */
 static double decimal(double whole, int exponent)
 {
 	double power = 1;
@@ -284,7 +284,7 @@ static double decimal(double whole, int exponent)
 	return exponent < 0 ? whole / power : whole * power;
 }
 
-/* Round gaps from 0 to the largest that a run needs, or above: whole multiples of 1, 2 or 5 times a power of ten. */
+/* Round gaps from 0 to at least the largest gap needed: integer multiples of 1, 2 or 5 times a power of ten. */
 static int gaps_round(double largest, double *gaps)
 {
 	static const double factors[] = {1, 2, 5};
@@ -324,7 +324,7 @@ static void outputs_reduce(struct pound_run *run, int cell)
 	}
 }
 
-/* The needs at a contact in a cell, whose rules are applied already. */
+/* Fills the needs at a contact in a cell, after rules_apply. */
 static void needs_reduce(struct pound_run *run, int cell, int contact, double *scratch)
 {
 	const struct pound_separation *asked = &run->campaign.study->separation;
@@ -349,7 +349,7 @@ static void needs_reduce(struct pound_run *run, int cell, int contact, double *s
 		needs->needed[k] = needed.gap[k];
 }
 
-/* The cells that differ from one in a sweep alone are so far from each other. */
+/* Distance of the cells that differ only in one sweep. */
 static int stride_of(const struct pound_study *study, int sweep)
 {
 	int stride = 1;

@@ -1,4 +1,4 @@
-/* status.c - what a status means, in words. */
+/* status.c - descriptions of the status values. */
 #include "engine/pound.h"
 
 const char *pound_status_text(enum pound_status status)
@@ -13,7 +13,7 @@ const char *pound_status_text(enum pound_status status)
 	return "unknown status";
 }
 
-/* Why a study ended without a result: a status of runs covers all of them. */
+/* Why a study ended without a result; a run status then applies to all runs. */
 const char *pound_status_error(enum pound_status status)
 {
 	static const char *const none[] = {

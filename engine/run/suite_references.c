@@ -1,5 +1,5 @@
-/* suite_references.c - what the records of a suite are scaled by, and how well they are sampled: a record's peak, its spectral acceleration, or the median of
- * these over the suite. */
+/* suite_references.c - reference intensities of the records of a suite (a record's peak, its spectral acceleration, or the suite's
+ * median of these), and the adequacy of their sampling. */
 #include "engine/run/suite_references.h"
 
 #include <gsl/gsl_sort.h>
@@ -11,7 +11,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The middle one of sorted numbers, of an even number the geometric mean of both. */
+/* Median of sorted numbers; of an even number the geometric mean of the middle two. */
 static double median(const double *sorted, int n)
 {
 	return n % 2 ? sorted[n / 2] : sqrt(sorted[n / 2 - 1]) * sqrt(sorted[n / 2]);
@@ -20,12 +20,12 @@ static double median(const double *sorted, int n)
 enum {
 	PAIRS =
 	    2 *
-	    POUND_BUILDINGS_MAX /* tasks of a record that is looked at: each body on it and on its interpolation */
+	    POUND_BUILDINGS_MAX /* tasks to check a record: each body on the record and on its interpolation */
 };
 
 #define TASKS(suite) ((size_t)((suite)->n_records > PAIRS ? (suite)->n_records : PAIRS))
 
-/* What is in the work space: that of the solver, tasks and their results, and the longest record at twice its rate. */
+/* Layout of the scratch memory: the solver's, tasks, their results, and the longest record at twice its rate. */
 static size_t results_start(const struct pound_excitation *suite)
 {
 	return POUND_EXACT_SCRATCH + TASKS(suite) * sizeof(struct pound_task);
@@ -76,16 +76,16 @@ static enum pound_status spectral(const struct pound_excitation *suite, char *sc
 	return status;
 }
 
-/* What the intensity is divided by to scale each record.
+/* Reference intensity of each record, the divisor of the target intensity.
  *
- * Given    suite       -            -      to be scaled; no record is 0 throughout
- * Returns  references  (n_records)  m/s2   of the record times its own factor
+ * Given    suite       -            -      scaled; no record is 0 throughout
+ * Returns  references  (n_records)  m/s2   of each record times its own factor
  * Status   POUND_STOPPED  stop was set
  * Memory   scratch     (pound_suite_scratch)
  *
  *   pga         max |a_k|
  *   sa          w^2 max |u_k|,  u'' + 2 xi w u' + w^2 u = -a_k,  w = 2 pi/T      pseudo-acceleration, exact
- *   median_sa   of these the median, the same for all records
+ *   median_sa   median of sa over the suite, the same for all records
  *
  * Test     unit_suite: factors_are_those_of_their_definition
  */
@@ -108,7 +108,7 @@ enum pound_status pound_suite_references(const struct pound_excitation *suite, v
 	return status;
 }
 
-/* The oscillator that stands for a body: a building's first mode with the damping of its first story; false: it is a wall. */
+/* The oscillator that represents a body: a building's first mode with the damping of its first story; false: a wall. */
 static bool body_of(const struct pound_scene *scene, int i, double *w, double *damping_ratio)
 {
 	if (!scene->n_buildings) {
@@ -124,11 +124,11 @@ static bool body_of(const struct pound_scene *scene, int i, double *w, double *d
 	return true;
 }
 
-/* What linear interpolation between samples costs: u of a body on the record over u on its band-limited interpolation at twice the
- * rate, which is linear between samples, too, less 1.
+/* Error of linear interpolation between samples: peak displacement of a body on the record over the peak on its band-limited
+ * interpolation at twice the rate, which is also linear between samples, less 1.
  *
- * Given    scene        -            -   its bodies taken as linear and without contact, of a building its first mode
- * Returns  differences  (n_records)  -   of all bodies the largest one; NAN: of walls alone
+ * Given    scene        -            -   bodies taken as linear and without contact, a building as its first mode
+ * Returns  differences  (n_records)  -   largest over all bodies; NAN: only walls
  * Status   POUND_STOPPED  stop was set
  * Memory   scratch      (pound_suite_scratch)
  *

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-/* CPU time that a run is timed over at least [s]. */
+/* Least CPU time to measure over [s]. */
 static const double CLOCK_LEAST = 0.02;
 
-/* CPU time of a run in the request's last block, NAN without a clock: as many rounds as its ticks can resolve. */
+/* CPU time per run of the request's last block, repeated until CLOCK_LEAST has passed; NAN without a clock. */
 static enum pound_status run_time(const struct pound_run *run, struct pound_request *request,
                                   const struct pound_solver *solver, double *cpu)
 {
@@ -28,7 +28,7 @@ static enum pound_status run_time(const struct pound_run *run, struct pound_requ
 	return POUND_OK;
 }
 
-/* Adds to a block of one trial the histories and the time of a run. */
+/* Adds histories and CPU times to a block of one trial. */
 enum pound_status pound_trials_block(const struct pound_run *run, struct pound_request *request, int first,
                                      int n, struct pound_trial_run *runs)
 {
@@ -40,7 +40,7 @@ enum pound_status pound_trials_block(const struct pound_run *run, struct pound_r
 		double *history = runs[item].history;
 		for (int k = 0; k < n_times && !status; k++) {
 			if (k > 0 && isnan(history[k - 1]))
-				history[k] = NAN; // it ended before that
+				history[k] = NAN; // it failed earlier
 			else
 				status =
 				    pound_request_displacement(request, &solver, item, samples[k], run->stop, &history[k]);

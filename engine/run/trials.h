@@ -7,7 +7,7 @@
 
 enum { POUND_TRIAL_MEASURES = sizeof(struct pound_trial_run) / sizeof(double) };
 
-/* Adds to a block of one trial the histories and the time of a run. */
+/* Adds histories and CPU times to a block of one trial. */
 enum pound_status pound_trials_block(const struct pound_run *run, struct pound_request *request, int first,
                                      int n, struct pound_trial_run *runs);
 
