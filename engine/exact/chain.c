@@ -6,13 +6,18 @@
  *
  * chain.inl runs one chain after the other and includes, in this order:
  *
- *   chain_state.inl   columns of floors, links, the start and the end
- *   series.inl        first roots of guards on power series, shared with the solver of pairs
- *   chain_series.inl  the series of a step
- *   chain_events.inl  its first event
- *   chain_peaks.inl   largest values inside the step
- *   chain_energy.inl  work done in the step
- *   chain_step.inl    one step up to an event, and what follows
+ *   chain_state.inl             columns of floors, links, the start and the end
+ *   series.inl                  first roots of event functions on power series, shared with the solver of pairs
+ *   chain_series.inl            the series of a step
+ *   nonlinear_contact.inl       the same while a contact force is a product or a power
+ *   impact.inl                  rigid impacts and held contacts
+ *   chain_events.inl            the first event of a step
+ *   chain_peaks.inl             largest values inside the step
+ *   chain_energy.inl            work done in the step
+ *   nonlinear_contact_step.inl  the first event and the end of a step with such a contact
+ *   chain_observer.inl          pieces reported to an observer
+ *   chain_step.inl              one step up to an event, and what follows
+ *   chain_modal.inl             whole samples by modes
  *
  * It is compiled once for each lane count: chain_w8.c, chain_w4.c, chain_w1.c, chain_portable.c. */
 #include "engine/exact/chain.h"

@@ -23,7 +23,7 @@ enum { FREE_SAMPLES = 4095 }; /* free motion is interrupted at every sample with
 
 static_assert(sizeof(struct state_rows) == ROWS_END * sizeof(double), "rows are eight doubles each");
 static_assert(offsetof(struct simulation, task) - offsetof(struct simulation, ground) <= 128,
-              "what every turn reads is two cache lines");
+              "what every step reads fits into two cache lines");
 
 static double most(double a, double b)
 {
