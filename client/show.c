@@ -65,7 +65,7 @@ static void print_pairs(const struct reading *result, const char *at)
 /* The storeys of a row and the floors above them, means over the signals, which the JSON has each. */
 static void print_storeys(const struct reading *result, const char *at)
 {
-	static const char *const columns[] = {"building", "storey",   "drift_m", "free_m", "ratio",
+	static const char *const columns[] = {"building", "storey",   "drift_m", "free_m", "drift/h",
 	                                      "shear_n",  "residual", "a_m_s2",  "a_free", NULL};
 	static const struct {
 		const char *list, *name;
@@ -91,7 +91,7 @@ static void print_storeys(const struct reading *result, const char *at)
 			}
 		}
 	putchar('\n');
-	table_prose(0, "storeys and the floors above them, means over the signals of what is largest in each");
+	table_prose(0, "storeys, each with the floor above: peak values, means over the signals");
 	table_print(table, 2);
 	table_close(table);
 }
@@ -249,7 +249,7 @@ static void floor_spectrum(const struct reading *result)
 	static const char *const members[] = {"frequency_hz", "frequency_ratio", "mean_m_s2", "dirac_peaks_m_s2",
 	                                      "ratio"};
 	cell_failed(result, "");
-	puts("\npseudo-acceleration [m/s2], means over the signals, of the first 16 and 84 % too");
+	puts("\npseudo-acceleration [m/s2]: means over the signals, percentiles of 'pounding'");
 	struct table *table = table_open(1, columns);
 	for (int k = 0; k < reading_count(result, "/frequencies_hz"); k++) {
 		table_number(table, reading_number(result, "/frequencies_hz/%d", k));
@@ -267,11 +267,11 @@ static void floor_spectrum(const struct reading *result)
 	for (int j = 0; j < reading_count(result, "/peaks") && j < PEAKS; j++)
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
 			table_number(table, reading_number(result, "/peaks/%d/%s", j, members[m]));
-	puts("\npeaks of the spectrum with pounding, beside those of pulses every half period");
+	puts("\npeaks of the spectrum with pounding, and of pulses every half period");
 	table_print(table, 2);
 	table_close(table);
 	putchar('\n');
-	table_prose(0, "largest relative error over the frequencies, from the same on half the sample step");
+	table_prose(0, "largest relative error over the frequencies, from runs with half the sample step");
 	for (int row = 0; row < reading_count(result, "/accuracy/spectra"); row++)
 		printf("  %s %.2g\n", reading_text(result, "/accuracy/spectra/%d/name", row),
 		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));

@@ -202,9 +202,25 @@ static void behind_take(const struct sources *s, struct pound_estimate estimate,
 		*s->behind = rows;
 }
 
+/* A first-order index cannot exceed the total index.  If its interval lies above the interval of the pick-freeze total, the noise of few
+ * rows passes for an effect of the input: the pick-freeze estimate is taken, which is exactly 0 for an input without effect.  Not with
+ * few effective rows, where the total may have missed the rows that matter. */
+static void first_bound(const struct sources *s, struct pound_estimate *into, bool replaced[POUND_INPUTS_MAX])
+{
+	const struct pound_pick_freeze *p = &s->pick_freeze;
+	const bool usable = !s->shared && !few_hold_most(s->rows);
+	for (int j = 0; j < s->rows->n_inputs; j++) {
+		const double most = (s->corrected ? p->total : p->total_raw)[j].high;
+		replaced[j] = usable && into[j].low > most;
+		if (replaced[j])
+			into[j] = (s->corrected ? p->first : p->first_raw)[j];
+	}
+}
+
 static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 {
 	const int d = s->rows->n_inputs;
+	bool replaced[POUND_INPUTS_MAX];
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	// neighbors in one input cannot be used if they are arranged in the others
 	const bool neighbours = !s->sampling->quasi_random;
@@ -237,6 +253,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		behind_take(s, into[j],
 		            neighbours && !same(into[j], s->closed.first[j]) ? behind[j] : s->closed.first_rows[j]);
 	}
+	first_bound(s, into, replaced);
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];
@@ -247,8 +264,10 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		else
 			memcpy(other, level->pick_freeze.first, sizeof other);
 		for (int j = 0; j < d; j++)
-			s->accuracy->inputs[j].first_half[k] =
-			    same(into[j], s->closed.first[j]) ? level->closed.first[j] : other[j];
+			s->accuracy->inputs[j].first_half[k] = replaced[j] ? level->pick_freeze.first[j]
+			                                       : same(into[j], s->closed.first[j])
+			                                           ? level->closed.first[j]
+			                                           : other[j];
 	}
 }
 
@@ -453,6 +472,17 @@ static double rows_needed(double n, double behind)
 	return ceil(needed / digits) * digits;
 }
 
+static const double ROUNDING = 1e-9; /* of indices that are equal */
+
+/* Whether the interval of some first-order index lies above the interval of its total index. */
+static bool above_total(const struct pound_indices *indices, int n_inputs)
+{
+	for (int j = 0; j < n_inputs; j++)
+		if (indices->index[POUND_S1][j].low > indices->index[POUND_ST][j].high + ROUNDING)
+			return true;
+	return false;
+}
+
 static unsigned notes_of(const bool said[POUND_N_NOTES])
 {
 	unsigned notes = 0;
@@ -562,6 +592,7 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 	    [POUND_NOTE_FEW_ROWS] = varies && few && !s.shared,
 	    [POUND_NOTE_NOISE] = varies && lost_in_noise(&s, indices),
 	    [POUND_NOTE_NO_INTERVAL] = varies && lacks_interval(indices, d),
+	    [POUND_NOTE_ABOVE_TOTAL] = varies && !few && above_total(indices, d),
 	    [POUND_NOTE_FEW_DECIDE] = decided,
 	});
 	const int dropped = values->n_rows - rows.n_rows;
