@@ -20,7 +20,7 @@ static const double TRIED_LEAST = 0.01, TRIAL_MOST = 0.1, UNCOMMON_MOST = 0.5, T
 /* measured over estimated time from which a stopped trial counts as uncommonly slow */
 static const double UNCOMMON = 0.3;
 
-/* mean time per run of the study over the time per run of a complete trial, and of a stopped one */
+/* factor on the ratio of measured to estimated time, of a complete trial and of a stopped one; from the mean of many studies */
 static const double OTHERS = 1.25, STOPPED = 2;
 
 /* CPU time that nearly all tried studies stay below, over the corrected estimate */

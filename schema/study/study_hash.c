@@ -87,8 +87,8 @@ static void write_buildings(struct canon *c)
 	writer_end(&c->w);
 }
 
-/* A contact is written with inherited values; its own members are also listed, as an input or a sweep of the scene's contact does not
- * change them. */
+/* A contact is written with inherited values; its own members are also listed, as varying the scene's contact does not change
+ * them. */
 static void write_contacts(struct canon *c)
 {
 	writer_array(&c->w, "contacts", WRITER_LINES);
