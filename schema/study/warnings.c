@@ -1,4 +1,4 @@
-/* warnings.c - warnings of values that are valid but probably not intended: a missing mass, g instead of m/s2, a gap that never closes. */
+/* warnings.c - warnings of valid but probably unintended values: a missing mass, g instead of m/s2, a gap that never closes. */
 #include "schema/study/warnings.h"
 
 #include <math.h>
