@@ -14,7 +14,7 @@
 
 void csv_complain(const struct csv *csv, const char *column, const char *what)
 {
-	char place[CSV_CELL_SIZE + 80]; // problems_add() cuts it where it is too long
+	char place[CSV_CELL_SIZE + 80]; // problems_add() truncates it
 	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
 	problems_add(csv->problems, place, "%s", what);
 }
@@ -34,7 +34,7 @@ void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *
 /* Adds a problem for all lines with a fault: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
 void csv_fault_report(const struct csv_fault *fault, const char *column, struct problems *problems)
 {
-	char place[CSV_CELL_SIZE + 80]; // problems_add() cuts it where it is too long
+	char place[CSV_CELL_SIZE + 80]; // problems_add() truncates it
 	int n = 0;
 	if (fault->n == 0)
 		return;

@@ -32,7 +32,7 @@ static double scaled(double value, int exponent)
 static int decade(double value)
 {
 	int e = (int)floor(log10(value));
-	// log10 rounds
+	// correct rounding errors of log10
 	return scaled(value, -e) >= 10 ? e + 1 : scaled(value, -e) < 1 ? e - 1 : e;
 }
 

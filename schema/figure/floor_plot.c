@@ -1,4 +1,4 @@
-/* floor_plot.c - the floor spectra of a floor_spectrum. */
+/* floor_plot.c - the floor spectra of a floor_spectrum study. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

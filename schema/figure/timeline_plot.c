@@ -1,4 +1,4 @@
-/* timeline_plot.c - the contacts of one ground motion in time, from the samples of a response. */
+/* timeline_plot.c - the contacts of one ground motion in time, from the samples of a response study. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

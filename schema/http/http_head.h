@@ -22,7 +22,7 @@ enum {
 
 /* A stored header. */
 struct head_text {
-	int lines;                  /* headers of that name */
+	int lines;                  /* number of such headers */
 	char value[HEAD_TEXT_SIZE]; /* of the first, "" if it is too long; of a list header all elements
 	                               that fit */
 };

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CJSON_NUMBER_MAX = 63 }; // cJSON 1.7 copies a number into 64 bytes and cuts the rest off
+enum { CJSON_NUMBER_MAX = 63 }; // cJSON 1.7 truncates a number to 63 characters
 
 /* Shortens numbers that are too long for cJSON to fewer digits of the same double, padded with spaces. */
 static void shorten_numbers(char *text)

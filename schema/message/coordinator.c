@@ -1,6 +1,6 @@
 /* coordinator.c - states of a worker group:
  *
- *   rest -- blocks are wanted --> launch --> wait for the connection --> serve --+
+ *   idle -- blocks are wanted --> launch --> wait for the connection --> serve --+
  *    ^                              ^  failed: 1, 2, 4 ... 60 s later            |
  *    +------------------------------+--------------------- idle for 60 s, or lost
  *

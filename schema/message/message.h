@@ -57,7 +57,7 @@ _Static_assert(sizeof(struct message) == 32, "a head has 32 bytes");
 
 /* NULL, or a sentence about an invalid field of a head. */
 const char *message_fault(const struct message *message, enum message_sender sender);
-size_t message_body_size(const struct message *message); /* [bytes] of a head without a fault */
+size_t message_body_size(const struct message *message); /* [bytes] of a valid head */
 
 void message_prepare(int socket); /* sends without delay; a silent peer fails after MESSAGE_SILENCE */
 /* Transfer all bytes; false: the connection ended or failed. */

@@ -22,7 +22,7 @@ void npy_field(struct writer *fields, const char *name, const char *suffix, cons
 
 /* Magic, version 3 (UTF-8), length, dictionary; padded so that the data start at a multiple of 64.
  *
- * Given    fields    written by npy_field; taken over
+ * Given    fields    written by npy_field; freed here
  *          n         records that follow
  * Test     unit_samples: a_numpy_file_holds_the_same_numbers
  */

@@ -55,7 +55,7 @@ extern const struct field fields[];
 extern const int fields_count;
 
 const struct field *fields_find(const char *pattern);              /* NULL: none */
-const char *fields_name(const struct field *field);                /* last part of the pattern */
+const char *fields_name(const struct field *field);                /* last segment of the pattern */
 bool fields_child(const struct field *field, const char *pattern); /* whether it is a member of that object */
 
 /* Whether the field's pattern begins with one of n prefixes. */

@@ -47,7 +47,7 @@ static const double CHECKED = 2;
  * or in sustained contact, half as long as without a gap. */
 static const double NEAR = 0.4, RIDING = 0.01;
 
-/* [rad] of a step of a chain */
+/* radians per step of a row */
 static const double CHAIN_RADIANS = 4;
 
 /* cost of a step without its floors, in floors; and factor of the squared number of floors that modal damping couples */
@@ -55,10 +55,10 @@ static const double CHAIN_FLOORS = 8, MODAL_FLOORS = 0.12;
 
 static const double RESTITUTION_LEAST = 1e-3, DASHPOT_MOST = 300;
 
-/* [rad] of a step of a floor */
+/* radians per step of a floor */
 static const double FLOOR_RADIANS = 1.5;
 
-/* floors and spectra of a run: with and without pounding, and a third spectrum of the contact force alone */
+/* floors and spectra of a run: with and without pounding, and a spectrum of only the contact force */
 static const struct {
 	int floors, spectra;
 } ridden[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
@@ -80,7 +80,7 @@ static size_t law_offset(const struct pound_study *study, int body)
 	return (size_t)((const char *)pound_scene_law(&study->scene, body) - (const char *)&study->scene);
 }
 
-/* Whether a response without pounding depends on a member: all of its body but the mass. */
+/* Whether a response without pounding depends on a member: on all members of its body except the mass. */
 static bool of_body(const struct pound_study *study, int body, size_t offset)
 {
 	const size_t first = offsetof(struct pound_scene, oscillators) +
@@ -150,7 +150,7 @@ struct storeys {
 	double wide; /* cost of a step in floors: more than n if modal damping couples all floors */
 };
 
-/* Rate at which two neighbors may touch again: mean of the faster one's frequency and a frequency weighted by mass. */
+/* Rate at which two neighbors may touch again: mean of the higher frequency and of the mean weighted toward the lighter body. */
 static double touching(const struct storeys pair[static 2])
 {
 	const double ratio = pair[1].n ? pair[1].mass / pair[0].mass : 1;
@@ -448,7 +448,7 @@ bool operations_chained(const struct pound_study *study, const struct pound_solv
 	        pound_contact_force(study->scene.contact.model) != POUND_FORCE_LINEAR);
 }
 
-/* Adds runs of both oscillators together without contact, where an output reads them. */
+/* Adds runs of both oscillators together without contact, if an output needs them. */
 static void count_free_pairs(const struct pound_study *study, double items, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);

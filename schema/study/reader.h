@@ -17,7 +17,7 @@ struct reader {
 	char *text;                             /* next free byte for strings */
 	const struct study_files *files;        /* reads files of ground motions; NULL: files cannot be read */
 	struct suite_source *suite;             /* sources of the records, in the study's block  (suite_room) */
-	bool designed;                          /* the document is read for its design alone */
+	bool designed;                          /* only the design of the document is read */
 	int storeys;                            /* of the current building; 0: not known */
 	const struct field *swept; /* by the current sweep; NULL: its path names no field that may vary */
 	char pointer[512];         /* JSON Pointer of the current member */

@@ -17,7 +17,7 @@ struct writer;
 enum {
 	STUDY_SAMPLES_MAX = 10000000,  /* samples of one ground motion */
 	STUDY_RUNS_MAX = 10000000,     /* pounding runs of one study */
-	STUDY_VALUES_MAX = 1000,       /* of a discrete distribution */
+	STUDY_VALUES_MAX = 1000,       /* values of a discrete distribution */
 	STUDY_CELLS_MAX = 10000,       /* combinations of sweep values */
 	STUDY_AT_ONCE_MAX = 50000000,  /* samples of ground motion for one row in all cells: 400 MB per worker */
 	STUDY_TRIALS_MAX = 100000,     /* runs of one convergence study */

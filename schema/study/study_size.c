@@ -141,7 +141,7 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 		return;
 	double at_once =
 	    study_size_cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
-	bool few = runs <= most; // more have been reported
+	bool few = runs <= most; // else reported above
 	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
 		                "asks for %.3g samples of ground motion in all runs, at most %.0e",

@@ -10,7 +10,7 @@
 struct suite_record {
 	struct pound_record record;
 	const char *file;   /* NULL: samples are in the document, or the file is named by its SHA-256 */
-	const char *sha256; /* of a file, hexadecimal; NULL: not given */
+	const char *sha256; /* of the file, hexadecimal; NULL: not given */
 	const char *unit;   /* for a file that names none; NULL: not given */
 	int channel;        /* which acceleration of a file with several, from 1; 0: not given */
 };
