@@ -34,12 +34,11 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 
 bool plot_is_result(const cJSON *document); /* a result of any kind, and not a study document */
 const cJSON *plot_member(const cJSON *object, const char *name);
-const cJSON *plot_first(const cJSON *list);                         /* NULL: none */
-double plot_number(const cJSON *object, const char *name);          /* NAN: none */
-const char *plot_text(const cJSON *object, const char *name);       /* "": none */
-double *plot_numbers(struct plot *plot, const cJSON *list, int *n); /* null becomes NAN */
-double *plot_column(struct plot *plot, const cJSON *list, const char *name,
-                    int *n);               /* a member of each element */
+const cJSON *plot_first(const cJSON *list);                                          /* NULL: none */
+double plot_number(const cJSON *object, const char *name);                           /* NAN: none */
+const char *plot_text(const cJSON *object, const char *name);                        /* "": none */
+double *plot_numbers(struct plot *plot, const cJSON *list, int *n);                  /* null becomes NAN */
+double *plot_column(struct plot *plot, const cJSON *list, const char *name, int *n); /* of the elements */
 const cJSON *plot_cell(struct plot *plot); /* the chosen cell; NULL: invalid, see fault */
 
 /* The outputs of a cell to draw, at most `most`: the chosen one, or all, outputs without a frequency first.  0: see fault. */

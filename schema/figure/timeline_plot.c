@@ -7,8 +7,7 @@
 
 enum { MARKS_MOST = 1000, PAIRS_MOST = 7 };
 
-static const double RADIUS_MOST = 9,
-                    RADIUS_LEAST = 1.2; /* of marks whose areas are proportional to impulses */
+static const double RADIUS_MOST = 9, RADIUS_LEAST = 1.2; /* of marks; their areas show impulses */
 
 bool plot_has_timeline(const cJSON *result)
 {

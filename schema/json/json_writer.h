@@ -35,8 +35,7 @@ struct writer {
 };
 
 void writer_init(struct writer *writer);
-char *writer_take(struct writer *writer,
-                  size_t *length); /* the text, to be freed by free; NULL: out of memory */
+char *writer_take(struct writer *writer, size_t *length); /* the text, on the heap; NULL: out of memory */
 
 void writer_object(struct writer *writer, const char *name, enum writer_layout layout);
 void writer_array(struct writer *writer, const char *name, enum writer_layout layout);
@@ -51,8 +50,7 @@ void writer_bool(struct writer *writer, const char *name, bool value);
 /* The shortest of 15, 16 or 17 digits that reads back to the same double; "null" if not finite. */
 int writer_digits(double value, char digits[WRITER_NUMBER_SIZE]);
 
-void writer_json(struct writer *writer, const char *name,
-                 const char *document); /* `document` is JSON already */
+void writer_json(struct writer *writer, const char *name, const char *document); /* copies JSON */
 void writer_raw(struct writer *writer, const char *bytes, size_t length);
 
 /* A text cell of CSV: quoted if needed, and never a formula in a spreadsheet (text that starts with = + - @). */

@@ -319,9 +319,8 @@ static const struct table {
 	void (*put)(struct lines *lines, const struct place *at);
 	const char *list;   /* member of the owner */
 	const char *within; /* the list is this member of `list`; NULL: `list` itself */
-	const char
-	    *points; /* array of an element, with a line for each of its elements; NULL: one line per element */
-	bool whole;  /* no list: one line for the member itself */
+	const char *points; /* array of an element with a line per value; NULL: one line per element */
+	bool whole;         /* no list: one line for the member itself */
 } tables[] = {
     {"inputs", OUTPUT, put_input, "inputs", NULL, NULL, false},
     {"second_order", OUTPUT, put_set, "second_order", NULL, NULL, false},

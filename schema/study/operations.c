@@ -520,12 +520,11 @@ static void count_reductions(const struct pound_study *study, struct counts *c)
 	const double outputs = (double)study_cells(study) * study->n_outputs,
 	             rows = pound_design_rows_most(study);
 	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE_COLUMNS - 1) / TILE_COLUMNS;
-	// no bootstrap for rows in groups: a jackknife leaves out one group at a time
+	// no bootstrap for rows in groups: a jackknife leaves out one group at a time; a named estimator is estimated twice, with and
+	// without noise correction
 	const bool grouped =
 	    study->design.until.half_width > 0 || pound_design_quasi_random(study->design.method);
-	const double draws =
-	    grouped ? 0
-	            : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1); // a named one: twice more
+	const double draws = grouped ? 0 : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1);
 	c->of[DRAW] += draws;
 	c->of[TILE] += draws * tiles;
 	c->of[FIT] += outputs * rows * pound_design_samples(study);

@@ -69,8 +69,7 @@ static void read_building(struct reader *r, const cJSON *node, int i)
 void reader_buildings(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
-	r->study->scene.n_buildings =
-	    cJSON_GetArraySize(node); // read_building needs it: only the last may be a wall
+	r->study->scene.n_buildings = cJSON_GetArraySize(node); // read_building needs it
 	r->study->scene.n_buildings = reader_each(r, field, node, read_building);
 }
 

@@ -87,13 +87,11 @@ double study_steps(
 void study_cell(const struct pound_study *study, int cell, struct pound_scene *scene);
 /* The same, with own copies of buildings and contacts in `memory` (pound_row_bytes): study_cell leaves these unvaried. */
 void study_cell_row(const struct pound_study *study, int cell, void *memory, struct pound_scene *scene);
-double study_cell_sweep(const struct pound_study *study, int cell,
-                        int sweep); /* value of the sweep in the cell */
+double study_cell_sweep(const struct pound_study *study, int cell, int sweep); /* value of a sweep */
 
 /* Writes a varied value as in a document: a number, the name of a choice, true or false. */
 void study_value(struct writer *writer, const char *name, const char *path, double value);
-const char *study_choice(const char *path,
-                         double value); /* name of the choice, "true" or "false"; NULL: a number */
+const char *study_choice(const char *path, double value); /* name, or "true", "false"; NULL: a number */
 
 /* SHA-256 of the study with all defaults filled in: names, order of members and number formats do not matter. */
 void study_digest(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE]);   /* SHA-256, hexadecimal digits */

@@ -20,8 +20,7 @@ struct study_status {
 
 /* whether it has taken at least three times the estimated CPU time */
 bool study_status_over(double cpu_s, double cpu_s_estimated);
-double study_status_eta(const struct study_status *study,
-                        int n_workers); /* remaining time [s], NAN: unknown */
+double study_status_eta(const struct study_status *study, int n_workers); /* time left [s], NAN: unknown */
 void study_status_write(struct writer *writer, const struct study_status *study, int n_workers);
 
 #endif
