@@ -1,6 +1,6 @@
-/* csv_reader.c - CSV from outside, cell by cell, with faults that many lines may have reported once.
+/* csv_reader.c - reads CSV of users cell by cell; a fault of many lines is reported once.
  *
- * Source   RFC 4180; a quoted cell may not hold an end of line here */
+ * Source   RFC 4180; but here a quoted cell must not contain a line break */
 #include "schema/external/csv_reader.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 
 void csv_complain(const struct csv *csv, const char *column, const char *what)
 {
-	char place[CSV_CELL_SIZE + 80]; // problems_add() cuts it where it is too long
+	char place[CSV_CELL_SIZE + 80]; // problems_add() truncates it
 	snprintf(place, sizeof place, column ? "line %d, %s" : "line %d", csv->line, column);
 	problems_add(csv->problems, place, "%s", what);
 }
@@ -31,10 +31,10 @@ void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *
 	va_end(arguments);
 }
 
-/* Reports a fault of all lines: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
+/* Adds a problem for all lines with a fault: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
 void csv_fault_report(const struct csv_fault *fault, const char *column, struct problems *problems)
 {
-	char place[CSV_CELL_SIZE + 80]; // problems_add() cuts it where it is too long
+	char place[CSV_CELL_SIZE + 80]; // problems_add() truncates it
 	int n = 0;
 	if (fault->n == 0)
 		return;
@@ -53,7 +53,7 @@ void csv_fault_report(const struct csv_fault *fault, const char *column, struct 
 		problems_add(problems, place, "%s", fault->what);
 }
 
-/* Takes spaces off both ends. */
+/* Removes blanks at both ends. */
 static void trim(char *text)
 {
 	size_t lead = strspn(text, " \t"), n = strlen(text + lead);
@@ -65,7 +65,7 @@ static void trim(char *text)
 void csv_read(struct csv *csv)
 {
 	size_t n = 0;
-	bool quoted = false, closed = false; // inside quotes, right behind them
+	bool quoted = false, closed = false; // inside quotes, directly after them
 	csv->cut = false;
 	for (; csv->at < csv->end && *csv->at != '\n' && (quoted || *csv->at != ','); csv->at++) {
 		const bool quote = *csv->at == '"', doubled = quote && closed;
@@ -86,7 +86,7 @@ void csv_read(struct csv *csv)
 	trim(csv->cell);
 }
 
-/* Lines from here on, blank ones too: the only cell of a line may be empty. */
+/* Number of lines from here on; blank ones count, as the only cell of a line may be empty. */
 int csv_lines_left(const struct csv *csv)
 {
 	int n = 0;
@@ -105,7 +105,7 @@ bool csv_blank(const char *at, const char *end)
 	return true;
 }
 
-/* Whether a text is a decimal number: C's strtod would take 0x10 and inf too. */
+/* Whether a text is a decimal number; strtod would also accept 0x10 and inf. */
 static bool is_decimal(const char *text)
 {
 	size_t n = strspn(text, "+-") <= 1 ? strspn(text, "+-") : 0;
@@ -124,7 +124,7 @@ static bool is_decimal(const char *text)
 	return !text[n];
 }
 
-/* What marks a failed run: an empty cell, "nan", "NA". */
+/* Whether a cell marks a failed run: empty, "nan" or "NA". */
 static bool is_failed(const char *text)
 {
 	return !*text || strcasecmp(text, "nan") == 0 || strcmp(text, "NA") == 0;
@@ -141,7 +141,7 @@ bool csv_number(const struct csv *csv, double *value)
 	return isfinite(*value);
 }
 
-/* Reports what is wrong with the name of column c, the current cell; same: an earlier column of that name, or -1. */
+/* Adds the problems of the name of column c, in the current cell; same: an earlier column with this name, or -1. */
 void csv_name_check(const struct csv *csv, int c, int same)
 {
 	char what[CSV_CELL_SIZE + 80];
@@ -161,7 +161,7 @@ void csv_name_check(const struct csv *csv, int c, int same)
 		csv_complain(csv, csv->cell, what);
 }
 
-/* Whether the text is UTF-8; the current line is the first that is not. */
+/* Whether the text is UTF-8; if not, the current line is the first invalid one. */
 bool csv_is_text(struct csv *csv)
 {
 	const char *at = csv->at;

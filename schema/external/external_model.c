@@ -1,8 +1,8 @@
-/* external_model.c - a model that is run elsewhere: the rows of a design as CSV, and the indices of its outputs from CSV.
+/* external_model.c - an external model: writes the rows of a design as CSV, and computes indices from its outputs in CSV.
  *
- * 1. The header says what each column is: an output, an output's variance, or an input.
- * 2. The lines after it are the samples of the design, in its order; inputs, where they are, must be those of the design.
- * 3. The run reduces the outputs as if they were its own. */
+ * 1. The header gives the role of each column: output, variance or replicate of an output, or input.
+ * 2. The lines after the header are the samples of the design, in its order; inputs, if given, must equal the design's.
+ * 3. The run reduces these outputs in the same way as outputs of its own runs. */
 #include "schema/external/external_model.h"
 
 #include <assert.h>
@@ -26,8 +26,8 @@ static void put_number(struct writer *w, double value)
 /* Lines of a design.
  *
  * Given    study, run  -         -       the run's design
- *          first, n    -         -       its rows; a line for each of their samples, a header before row 0
- * Returns  value       (length)  -       CSV, lines end with a newline alone; NULL: out of memory
+ *          first, n    -         -       rows to write, one line per sample; a header before row 0
+ * Returns  value       (length)  -       CSV, lines end with a newline only; NULL: out of memory
  * Memory   allocates; the caller frees
  *
  * Test     unit_external_model: rows_come_in_the_order_of_the_contract_and_read_back_to_the_same_numbers
@@ -55,10 +55,10 @@ char *model_rows(const struct pound_study *study, const struct pound_run *run, i
 
 /* ---- columns ---- */
 
-// squares of outputs, and products of those, are still doubles
+// so that squares of outputs, and products of squares, do not overflow
 static const double OUTPUT_MOST = 1e60, VARIANCE_MOST = 1e120;
 
-/* What can be wrong with a cell, but for its header. */
+/* Faults of cells below the header. */
 enum fault_kind { FAULT_NUMBER, FAULT_RANGE, FAULT_INPUT, N_FAULTS };
 
 enum role { ROLE_OUTPUT, ROLE_VARIANCE, ROLE_REPLICATE, ROLE_INPUT, ROLE_OTHER };
@@ -68,22 +68,22 @@ enum { REPLICATES_MAX = 1000 };
 struct column {
 	char *name;
 	enum role role;
-	int index;     /* of the output or the input */
+	int index;     /* index of the output or input */
 	int replicate; /* from 0 */
 	struct csv_fault faults[N_FAULTS];
 };
 
 struct outputs {
-	struct pound_study study; /* the one given, with these outputs */
+	struct pound_study study; /* the given study with these outputs */
 	int n_columns;
 	struct column *columns; /* (n_columns) */
 	char **names;           /* of the outputs  (study.n_outputs) */
-	char **stems; /* those of them that are not a column's, each in its place; NULL: it is  (n_columns) */
+	char **stems; /* names that are not column names, to be freed; NULL: it is a column name  (n_columns) */
 };
 
 static const char VARIANCE[] = ".variance", REPLICATE[] = ".replicate";
 
-/* Whether a name in a header is that of an input, as a cell writes it. */
+/* Whether a name in a header is the name of an input, with or without the apostrophe of writer_cell. */
 static bool is_input(const struct pound_input *input, const char *name)
 {
 	bool guarded = *name == '\'' && strchr("=+-@", input->name[0]);
@@ -98,7 +98,7 @@ static int column_named(const struct outputs *outputs, int n, const char *name, 
 	return -1;
 }
 
-/* NAME.replicateK, K from 1 without leading zeros: the length of NAME; 0: it is no such name. */
+/* The length of NAME in a name NAME.replicateK, K from 1 without leading zeros; 0: another name. */
 static size_t replicate_stem(const char *name, int *replicate)
 {
 	const size_t n = strlen(name), digits = sizeof REPLICATE - 1;
@@ -130,9 +130,9 @@ static void column_role(const struct outputs *outputs, struct column *column)
 		}
 }
 
-/* Outputs of columns of replicates, each of as many as the first; there are no other outputs then.
+/* Joins columns of replicates to outputs.  All outputs must have the same number of replicates, and none may have none.
  *
- * Returns  value  outputs
+ * Returns  value  number of outputs
  */
 static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outputs)
 {
@@ -160,7 +160,7 @@ static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outpu
 	snprintf(what, sizeof what,
 	         "replicates must be numbered from 1 to the same number, 2 to %d, for every output",
 	         REPLICATES_MAX);
-	// names are different, so as many columns as there are numbers have each number once
+	// column names are unique, so if the number of columns is right, each number occurs once
 	if (most < 2 || most > REPLICATES_MAX || n != most * (n_outputs - single))
 		csv_complain(csv, NULL, what);
 	if (single > 0)
@@ -171,7 +171,7 @@ static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outpu
 	return n_outputs;
 }
 
-/* Which outputs there are, and whose variances the other columns are. */
+/* Finds the outputs and the columns of their variances and replicates. */
 static void columns_join(struct outputs *outputs, struct csv *csv)
 {
 	int n_outputs = 0;
@@ -218,7 +218,7 @@ static void column_read(struct outputs *outputs, struct csv *csv)
 	csv_name_check(csv, c, column_named(outputs, c, column->name, strlen(column->name)));
 }
 
-/* The first line: what each column is. */
+/* Reads the first line: the role of each column. */
 static bool header_read(struct outputs *outputs, struct csv *csv)
 {
 	const char *newline = memchr(csv->at, '\n', (size_t)(csv->end - csv->at));
@@ -249,23 +249,23 @@ static bool header_read(struct outputs *outputs, struct csv *csv)
 
 /* ---- lines ---- */
 
-/* What is known of a line: the sample it belongs to and what its cells say. */
+/* A line: its sample in the design and the values of its cells. */
 struct line {
 	struct pound_run *run;
 	int row, sample;
 	double x[POUND_INPUTS_MAX];
 	double *value;    /* (n_outputs x replicates) */
 	double *variance; /* (n_outputs) */
-	bool strange;     /* an input that is not the design's was reported */
+	bool strange;     /* an input that differs from the design was reported */
 };
 
-/* An input that was written with a few digits only is still the design's. */
+/* Whether an input equals the design's, up to rounding to few digits. */
 static bool alike(double given, double wanted)
 {
 	return fabs(given - wanted) <= 1e-4 * fmax(fabs(given), fabs(wanted)) + 1e-6;
 }
 
-/* Values of an output in a line. */
+/* Number of values of an output in a line. */
 static int values_of(const struct outputs *outputs)
 {
 	return outputs->study.replicates ? outputs->study.replicates : 1;
@@ -302,7 +302,7 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 	}
 }
 
-/* Gives a line's outputs to the run: a run without one of its numbers has failed. */
+/* Passes a line's outputs to the run; if a number is missing, the whole sample counts as failed. */
 static void line_assign(const struct outputs *outputs, const struct line *line)
 {
 	const int n = values_of(outputs);
@@ -350,7 +350,7 @@ static void faults_report(const struct outputs *outputs, const struct csv *csv)
 			csv_fault_report(&outputs->columns[c].faults[kind], outputs->columns[c].name, csv->problems);
 }
 
-/* All lines after the header into the run. */
+/* Reads all lines after the header into the run. */
 static void lines_read(const struct outputs *outputs, struct csv *csv, struct pound_run *run)
 {
 	const size_t n_outputs = (size_t)outputs->study.n_outputs, n_values = n_outputs * values_of(outputs);
@@ -397,22 +397,22 @@ static char *reduce(const struct outputs *outputs, struct pound_run *run, size_t
 	return result_to_json(&outputs->study, pound_run_result(run), NULL, length);
 }
 
-/* Indices of outputs computed elsewhere.
+/* Computes the indices of an external model's outputs.
  *
  * Given    study     -             -   read by study_design_from_json
- *          csv       (csv_length)  -   header; a line for every sample of the design, in the order of model_rows
- * Returns  value     (length)      -   JSON; NULL: problems->status says why, pointers are "line 3, NAME"
+ *          csv       (csv_length)  -   header, then one line per sample of the design, in the order of model_rows
+ * Returns  value     (length)      -   JSON; NULL: failed, see problems->status; pointers are "line 3, NAME"
  * Memory   allocates; the caller frees
  *
- * An output or a variance that is empty or nan is a failed run: its row is left out for every output.  A design that grows
- * is that of its first look.
+ * An output or a variance that is empty or nan marks a failed run: its row is left out for every output.  A growing design has
+ * only the rows up to its first check of the intervals.
  *
  * Test     unit_external_model
  */
 char *model_indices(const struct pound_study *study, const char *csv, size_t csv_length,
                     struct problems *problems, size_t *length)
 {
-	static const char mark[] = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets put it
+	static const char mark[] = "\xEF\xBB\xBF"; // byte order mark, which spreadsheets write
 	struct outputs outputs = {.study = *study};
 	struct csv at = {.at = csv, .end = csv + csv_length, .line = 1, .problems = problems};
 	char *json = NULL;

@@ -1,7 +1,7 @@
-/* external_model.h - sensitivity indices of a model that is run elsewhere: the rows of a design out, the outputs in.
+/* external_model.h - sensitivity indices of an external model: writes the rows of a design, reads the outputs.
  *
- * Every function returns bytes on the heap for the caller to free, zero-terminated too; NULL: out of memory, or what
- * `problems` says.  Any thread. */
+ * Every function returns zero-terminated bytes on the heap, which the caller frees; NULL: out of memory, or see
+ * `problems`.  Any thread. */
 #ifndef EXTERNAL_MODEL_H
 #define EXTERNAL_MODEL_H
 
@@ -10,13 +10,13 @@
 #include "engine/pound.h"
 #include "schema/json/problems.h"
 
-/* Rows [first, first + n) of a run's design as CSV, a line for every sample of a row; before row 0 a header of the
- * inputs' names. */
+/* Rows [first, first + n) of a run's design as CSV, one line per sample of a row; before row 0 a header with the
+ * names of the inputs. */
 char *model_rows(const struct pound_study *study, const struct pound_run *run, int first, int n,
                  size_t *length);
 
-/* The result, as result_to_json writes it but without timing, of the outputs that a model gave for those lines: CSV
- * with a column for every output and, where it is known, NAME.variance. */
+/* The result, in the form of result_to_json without timing, from the outputs of the model for these lines: CSV
+ * with a column for every output and, if known, its variance, NAME.variance. */
 char *model_indices(const struct pound_study *study, const char *csv, size_t csv_length,
                     struct problems *problems, size_t *length);
 

@@ -1,9 +1,9 @@
-/* given_table.c - sensitivity indices of samples that were drawn elsewhere.
+/* given_table.c - sensitivity indices of given samples without a design.
  *
- * 1. Two tables are read, a line for each sample: one of inputs, one of outputs.
- * 2. Samples without one of their numbers are left out of all, and counted.
- * 3. The engine checks the samples once and estimates the indices of each output; all goes into one result, in the form of
- *    a sensitivity study's. */
+ * 1. Two tables are read, with one line per sample: inputs and outputs.
+ * 2. Samples with a missing number are left out for every output, and counted.
+ * 3. The engine checks the samples once and estimates the indices of each output; the result has the form of
+ *    a sensitivity result. */
 #include "schema/external/given_table.h"
 
 #include <math.h>
@@ -17,7 +17,7 @@
 #include "schema/json/json_writer.h"
 #include "schema/result/result_json.h"
 
-// squares of outputs, and products of those, are still doubles
+// so that squares of outputs, and products of squares, do not overflow
 static const double NUMBER_MOST = 1e60;
 
 /* ---- tables ---- */
@@ -59,7 +59,7 @@ static void header_read(struct given_table *table, struct csv *csv)
 	} while (!csv->ended);
 }
 
-/* One line into its row; faults of the columns are kept in `faults`, a place each. */
+/* Reads one line into a row of the table; faults are noted per column in `faults`  (n_columns). */
 static void line_read(struct given_table *table, struct csv *csv, int row, struct csv_fault *faults)
 {
 	int n = 0;
@@ -83,7 +83,7 @@ static void line_read(struct given_table *table, struct csv *csv, int row, struc
 		csv_fault_note(&csv->length, csv, "has %d cells, the header has %d", n, table->n_columns);
 }
 
-/* Takes blank lines off the end. */
+/* Removes blank lines at the end. */
 static void end_trim(struct csv *csv)
 {
 	for (const char *end = csv->end; end > csv->at && csv_blank(end - 1, end); end--)
@@ -117,7 +117,7 @@ static void lines_read(struct given_table *table, struct csv *csv)
 	free(faults);
 }
 
-/* Takes a column out of a table. */
+/* Removes a column from a table. */
 static void column_drop(struct given_table *table, int column)
 {
 	const int n = table->n_columns;
@@ -131,11 +131,11 @@ static void column_drop(struct given_table *table, int column)
 	table->n_columns--;
 }
 
-/* A table of samples from CSV.
+/* Reads a table of samples from CSV.
  *
  * Given    role       -         -       of its columns
- *          csv        (length)  -       a header and a line for each sample; columns `row` and `sample` do not count
- * Returns  table      -         -       for given_table_free, whatever is wrong
+ *          csv        (length)  -       a header and one line per sample; columns `row` and `sample` are ignored
+ * Returns  table      -         -       to be freed by given_table_free, also after errors
  *          problems   -         -       pointers are "line 3, NAME"
  *
  * Test     unit_given_table: what_is_wrong_with_a_table_is_reported_completely
@@ -143,7 +143,7 @@ static void column_drop(struct given_table *table, int column)
 void given_table_read(struct given_table *table, enum given_role role, const char *csv, size_t length,
                       struct problems *problems)
 {
-	static const char mark[] = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets put it
+	static const char mark[] = "\xEF\xBB\xBF"; // byte order mark, which spreadsheets write
 	static const char *const others[] = {"row", "sample"};
 	struct csv at = {.at = csv, .end = csv + length, .line = 1, .problems = problems};
 	*table = (struct given_table){0};
@@ -186,13 +186,13 @@ void given_table_free(struct given_table *table)
 
 /* ---- complete samples ---- */
 
-/* Samples with all their numbers, and what the estimates take. */
+/* Complete samples, and memory for the estimates. */
 struct samples {
 	struct pound_given given;
-	const struct given_table *outputs; /* in columns that are no inputs */
+	const struct given_table *outputs; /* in columns that are not inputs */
 	int n_outputs, missing;
-	int *column;                      /* of each output in the table  (n_outputs) */
-	int *row;                         /* of each sample in the tables  (given.n_rows) */
+	int *column;                      /* column of each output in the table  (n_outputs) */
+	int *row;                         /* row of each sample in the tables  (given.n_rows) */
 	double *x, *y, *values, *scratch; /* y: one output  (given.n_rows) */
 	size_t *order;
 	struct pound_given_indices *indices; /* of one output */
@@ -211,7 +211,7 @@ static void samples_free(struct samples *s)
 	free(s->given.inputs);
 }
 
-/* Columns of outputs with an input's name are that input: written with few digits, maybe. */
+/* A column of the outputs with the name of an input must equal that input, up to rounding to few digits. */
 static void inputs_compare(const struct given_table *x, const struct given_table *y, int input, int column,
                            struct problems *problems)
 {
@@ -250,7 +250,7 @@ static bool complete(const struct given_table *table, int row)
 	return true;
 }
 
-/* Inputs without a missing number; a constant is no input. */
+/* Takes the complete samples; adds a problem for every constant input. */
 static void samples_take(const struct given_table *x, const struct given_table *y, struct samples *s,
                          struct problems *problems)
 {
@@ -411,8 +411,8 @@ static char *result_of(struct samples *s, size_t *length)
 
 /* The indices of the outputs of given samples.
  *
- * Given    x, y       -         -       a line of each is one sample
- * Returns  value      (length)  -       JSON; NULL: problems->status says why, pointers are into the outputs
+ * Given    x, y       -         -       inputs and outputs, with one line per sample in the same order
+ * Returns  value      (length)  -       JSON; NULL: failed, see problems->status; pointers are into the outputs
  * Memory   allocates; the caller frees
  *
  * Test     unit_given_table: indices_of_two_tables_are_those_of_the_engine

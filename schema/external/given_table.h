@@ -1,6 +1,6 @@
-/* given_table.h - samples that were drawn elsewhere: a table of inputs and one of outputs as CSV, and their indices as JSON.
+/* given_table.h - given samples without a design: a table of inputs and one of outputs as CSV, and their indices as JSON.
  *
- * Tables hold memory of their own.  Any thread. */
+ * Tables own their memory.  Any thread. */
 #ifndef GIVEN_TABLE_H
 #define GIVEN_TABLE_H
 
@@ -16,12 +16,12 @@ struct given_table {
 	double *cells; /* NAN: missing  (n_rows x n_columns) */
 };
 
-/* A table from CSV; what is wrong is in problems.  Free it in any case. */
+/* Reads a table from CSV and adds its errors to problems.  Free the table in any case. */
 void given_table_read(struct given_table *table, enum given_role role, const char *csv, size_t length,
                       struct problems *problems);
 void given_table_free(struct given_table *table);
 
-/* The indices of the outputs, as JSON on the heap; NULL: problems->status says why. */
+/* The indices of the outputs, as JSON on the heap; NULL: failed, see problems->status. */
 char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,
                     size_t *length);
 

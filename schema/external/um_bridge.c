@@ -1,8 +1,8 @@
 /* um_bridge.c - a sensitivity study as a model of the UM-Bridge protocol 1.0.
  *
- * 1. The body says which model is meant: "pound", whose study is in the body or the paper's, or the id of a stored study.
- * 2. That study becomes the response study of its scene: the inputs' values are put in, the sweeps stay.
- * 3. The outputs of its cells are one vector; what is wrong is one message.
+ * 1. The body names the model: "pound", with a study in the body or else the paper's, or the id of a stored study.
+ * 2. The sensitivity study becomes a response study of its scene with the given values of the inputs; sweeps remain.
+ * 3. The outputs of all cells are one vector; all problems are one message.
  *
  * Source   UM-Bridge, https://um-bridge-benchmarks.readthedocs.io, protocol 1.0 */
 #include "schema/external/um_bridge.h"
@@ -25,12 +25,12 @@ static const char MODEL[] = "pound", STUDY_ABSENT[] = "paper_linear";
 struct um_bridge {
 	enum um_bridge_call call;
 	enum um_bridge_error error;
-	struct problems problems; /* what is wrong; its status PROBLEMS_NOMEM: no memory */
-	cJSON *body;              /* NULL: not JSON, or none */
+	struct problems problems; /* status PROBLEMS_NOMEM: no memory */
+	cJSON *body;              /* NULL: none, or not JSON */
 	const char *name;         /* of the model; NULL: none */
-	const char *place;        /* of the study in the body; "" when it is not there */
+	const char *place;        /* pointer to the study in the body; "": not in the body */
 	struct pound_study *study;
-	int n_inputs; /* of the study, which has none any more */
+	int n_inputs; /* of the sensitivity study; study->n_inputs is 0 */
 	double *outputs;
 	int n_outputs; /* of all cells */
 };
@@ -46,7 +46,7 @@ static const struct {
 
 /* ---- problems ---- */
 
-/* Reports the problems of a part of the request, its place in front of their pointers. */
+/* Adds the problems of a part of the request, with the pointer to that part before their pointers. */
 static void refuse_at(struct um_bridge *b, enum um_bridge_error error, const char *place,
                       const struct problems *problems)
 {
@@ -74,9 +74,9 @@ static bool refused(const struct um_bridge *b)
 	return b->problems.status != PROBLEMS_NONE;
 }
 
-/* ---- what is asked ---- */
+/* ---- the request ---- */
 
-/* The configuration of the call; NULL: there is none. */
+/* The configuration of the call; NULL: none. */
 static const cJSON *config_of(const struct um_bridge *b)
 {
 	const cJSON *config = cJSON_GetObjectItemCaseSensitive(b->body, "config");
@@ -101,10 +101,10 @@ static void check_config(struct um_bridge *b)
 	}
 }
 
-/* Reads the head of a call.
+/* Reads name and configuration of a call.
  *
- * Given    body      (length)  -   JSON of the request; not read of UM_BRIDGE_INFO
- * Returns  value     -         -   for um_bridge_close; NULL: out of memory
+ * Given    body      (length)  -   JSON of the request; ignored for UM_BRIDGE_INFO
+ * Returns  value     -         -   to be freed by um_bridge_close; NULL: out of memory
  * Test     service_bridge: every_error_of_the_protocol_has_its_type_status_and_message
  */
 struct um_bridge *um_bridge_open(enum um_bridge_call call, const char *body, size_t length)
@@ -151,7 +151,7 @@ long long um_bridge_id(const struct um_bridge *b)
 
 /* ---- the study ---- */
 
-/* A whole number of the configuration, or what it is when absent. */
+/* A whole number of the configuration, or its default. */
 static int whole(struct um_bridge *b, const char *name, int absent, int min, int max)
 {
 	char pointer[32];
@@ -170,7 +170,7 @@ static int whole(struct um_bridge *b, const char *name, int absent, int min, int
 	return absent;
 }
 
-/* Makes the response study of a sensitivity study: its scene and sweeps, and outputs that a single run has. */
+/* Turns a sensitivity study into a response study with the same scene, sweeps and outputs. */
 static void respond(struct um_bridge *b)
 {
 	struct pound_study *study = b->study;
@@ -184,7 +184,7 @@ static void respond(struct um_bridge *b)
 		}
 	b->n_inputs = study->n_inputs;
 	study->kind = POUND_KIND_RESPONSE;
-	study->unbalanced = true; // four fifths of its time, and no client sees them
+	study->unbalanced = true; // energy balances take four fifths of the time and are not part of the response
 	study->n_inputs = study->n_ratios = study->n_groups = study->spectrum.n = 0;
 	study->design.until.half_width = 0;
 	study->design.row = whole(b, "row", 0, 0, POUND_ROWS_MAX - 1);
@@ -224,7 +224,7 @@ void um_bridge_stored(struct um_bridge *b, const char *document, size_t length)
 		REFUSE(b, MODEL, "/name", "there is no study %s", b->name);
 }
 
-/* The study of a call that is for the model of no stored one. */
+/* The study of the model "pound": from the configuration, or else the paper's. */
 static void study_given(struct um_bridge *b)
 {
 	const cJSON *given = cJSON_GetObjectItemCaseSensitive(config_of(b), "study");
@@ -235,7 +235,7 @@ static void study_given(struct um_bridge *b)
 	if (given) {
 		struct writer w;
 		writer_init(&w);
-		w.line = 0; // indented, a hostile one is 20 times as long
+		w.line = 0; // one line: indentation can make a malicious document 20 times as long
 		json_write(&w, NULL, given, NULL, NULL);
 		text = writer_take(&w, &length);
 	}
@@ -264,7 +264,7 @@ static void assign(struct um_bridge *b, const struct pound_input *input, int j, 
 		pound_scene_assign(&b->study->scene, input->field, number->valuedouble + 0.0);
 }
 
-/* Puts the values of the inputs into the scene; what they mean together is checked as of any study. */
+/* Puts the values of the inputs into the scene and checks the resulting study. */
 static void assign_all(struct um_bridge *b)
 {
 	const cJSON *vectors = cJSON_GetObjectItemCaseSensitive(b->body, "input");
@@ -288,9 +288,9 @@ static void assign_all(struct um_bridge *b)
 	free(problems);
 }
 
-/* The study that gives a call's outputs.
+/* The study that computes a call's outputs.
  *
- * Returns  value     -    a response study; NULL: the call is refused, or needs none
+ * Returns  value     -    a response study; NULL: the call is refused, or needs no run
  * Test     service_bridge: evaluate_gives_the_numbers_of_the_response_study
  */
 const struct pound_study *um_bridge_study(struct um_bridge *b)
@@ -300,7 +300,7 @@ const struct pound_study *um_bridge_study(struct um_bridge *b)
 		study_given(b);
 	if (named && b->call == UM_BRIDGE_DERIVATIVE && !refused(b))
 		REFUSE(b, FEATURE, "", "this model supports Evaluate, and no derivatives");
-	// what is wrong with the input is reported beside what is wrong with the configuration
+	// also after problems of the configuration, so that problems of the input are reported with them
 	if (b->n_inputs && b->call == UM_BRIDGE_EVALUATE)
 		assign_all(b);
 	return refused(b) || b->call != UM_BRIDGE_EVALUATE ? NULL : b->study;
@@ -308,7 +308,7 @@ const struct pound_study *um_bridge_study(struct um_bridge *b)
 
 /* ---- output ---- */
 
-/* Whether an output has a place in the vector of outputs. */
+/* Whether an output exists in a cell, and so in the vector of outputs. */
 static bool applies(const struct pound_study *study, int cell, int output)
 {
 	struct pound_scene scene;
@@ -340,7 +340,7 @@ static void check_runs(struct um_bridge *b, const struct pound_result *result)
 
 /* Takes the outputs of the study that was run.
  *
- * A run without a result is an error, though the mean of the others is there: a sampler would take that for the model's.
+ * A failed run is an error although the mean of the other runs exists: a sampler would mistake that mean for the model's output.
  */
 void um_bridge_result(struct um_bridge *b, const struct pound_result *result)
 {
@@ -361,9 +361,9 @@ void um_bridge_result(struct um_bridge *b, const struct pound_result *result)
 		}
 }
 
-/* ---- the answer ---- */
+/* ---- the response ---- */
 
-/* {"error": {"type": ..., "message": ...}}, all problems in one text. */
+/* {"error": {"type": ..., "message": ...}}, with all problems in one message. */
 static void write_error(struct writer *w, const struct um_bridge *b)
 {
 	struct writer text;
@@ -404,10 +404,10 @@ static void write_outputs(struct writer *w, const struct um_bridge *b)
 	writer_end(w);
 }
 
-/* The answer to a call, after um_bridge_study, and um_bridge_result or um_bridge_refuse where there is one to run.
+/* The response to a call, after um_bridge_study, and after um_bridge_result or um_bridge_refuse if there is a study to run.
  *
  * Returns  value     (length)  bytes   JSON; NULL: out of memory
- *          status    -         -       of HTTP
+ *          status    -         -       HTTP status
  * Memory   allocates; the caller frees
  * Test     service_bridge
  */

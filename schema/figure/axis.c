@@ -1,7 +1,7 @@
 /* axis.c - ranges, ticks and panels.
  *
- * A tick is k m 10^e with whole k and m one of 1, 2, 5; its text is made from these whole numbers, so that it has the
- * digits that it needs and no rounding. */
+ * A tick is k m 10^e with integer k and m = 1, 2 or 5; its text is made from these integers, so that it has only the
+ * necessary digits and no rounding errors. */
 #include "schema/figure/draw.h"
 
 #include <math.h>
@@ -28,17 +28,17 @@ static double scaled(double value, int exponent)
 	return value * pow(10, half) * pow(10, exponent - half);
 }
 
-/* Power of ten of a number's first digit. */
+/* The power of ten of a number's first digit. */
 static int decade(double value)
 {
 	int e = (int)floor(log10(value));
-	// log10 rounds
+	// correct rounding errors of log10
 	return scaled(value, -e) >= 10 ? e + 1 : scaled(value, -e) < 1 ? e - 1 : e;
 }
 
 /* ---- axes ---- */
 
-/* The distance of ticks, at most `most` of them: *m times 10^*e; false: no number has that many digits. */
+/* The distance *m 10^*e of at most `most` ticks; false: below the resolution of doubles. */
 static bool step_of(const struct axis *axis, int most, int *m, int *e)
 {
 	double raw = axis->half_span / most * 2, largest = fmax(fabs(axis->low), fabs(axis->high));
@@ -81,7 +81,7 @@ struct axis axis_linear(struct range range)
 	bool empty = range.low > range.high;
 	struct axis axis = {.low = empty ? 0 : range.low, .high = empty ? 1 : range.high};
 	if (axis.high / 2 - axis.low / 2 < 1e-306) {
-		// all equal: the value in the middle, the width of a tenth of it
+		// all equal: the value in the middle, with a tenth of it to each side
 		double around = axis.low != 0 ? fmax(0.1 * fabs(axis.low), 1e-305) : 1;
 		axis.low = fmax(axis.low - around, -1.7e308);
 		axis.high = fmin(axis.high + around, 1.7e308);
@@ -98,7 +98,7 @@ struct axis axis_linear(struct range range)
 
 static const double mantissas[] = {1, 2, 5};
 
-/* The largest 1, 2 or 5 times a power of ten up to a value, or the smallest from it on. */
+/* The largest number of the form 1, 2 or 5 times a power of ten up to a value; up: the smallest from the value on. */
 static double nice(double value, bool up)
 {
 	int e = decade(value);
@@ -197,7 +197,7 @@ static void ticks_linear(const struct axis *axis, int most, struct ticks *ticks)
 	int first = decade(largest);
 	ticks->exponent = first >= 5 || first <= -4 ? first : 0;
 	int decimals = ticks->exponent - e > 0 ? ticks->exponent - e : 0;
-	// the ends are ticks up to rounding
+	// the ends of the axis are ticks, up to rounding
 	for (double k = ceil(axis->low / step - 1e-6); k <= axis->high / step + 1e-6; k++) {
 		double digits = scaled(k * m, e - ticks->exponent);
 		snprintf(text, sizeof text, "%.*f", decimals < 16 ? decimals : 16, digits == 0 ? 0.0 : digits);
@@ -210,7 +210,7 @@ static void ticks_linear(const struct axis *axis, int most, struct ticks *ticks)
 	}
 }
 
-/* The decades between two ticks: 1, 2, 5, 10 ... from a number on. */
+/* Decades between two ticks: the first of 1, 2, 5, 10, ... that is at least `least`. */
 static int stride_of(int least)
 {
 	static const int strides[] = {1, 2, 5, 10, 20, 50, 100, 200, 500};
@@ -243,7 +243,7 @@ static void ticks_log(const struct axis *axis, int most, struct ticks *ticks)
 		}
 	if (ticks->n >= 2)
 		return;
-	// both ends and the power of ten between them show how long a decade is
+	// fewer than two ticks: show both ends and a tick between them
 	const struct ticks inner = *ticks;
 	char text[32];
 	*ticks = (struct ticks){0};
@@ -291,7 +291,7 @@ void axis_ticks_across(const struct axis *axis, struct ticks *ticks)
 
 /* ---- panels ---- */
 
-/* The ticks up between top and bottom, and the room that they leave. */
+/* The ticks of the vertical axis, and the left end of the plot area beside their texts. */
 static void panel_ticks_up(struct panel *panel, struct ticks *up)
 {
 	axis_ticks(&panel->up, (int)((panel->bottom - panel->top) / (panel->up.whole ? 22 : 30)), up);
@@ -307,7 +307,7 @@ void panel_draw(struct drawing *drawing, struct panel *panel)
 	panel->right = panel->x + panel->width - 12;
 	panel->top = panel->y + (panel->title ? 21 : 8);
 	panel_ticks_up(panel, &up);
-	// the title begins where the frame does, and may take lines from it
+	// the title is aligned with the frame and may take several lines of its height
 	if (panel->title)
 		panel->top = 8 +
 		             draw_prose(drawing,
@@ -368,7 +368,7 @@ int panel_columns(const struct drawing *drawing, int n, double narrowest)
 	most = most < 1 ? 1 : most;
 	if (n <= most)
 		return n < 1 ? 1 : n;
-	// the same rows with as few columns as fill them
+	// as few columns as possible for the same number of rows
 	int rows = (n + most - 1) / most;
 	return (n + rows - 1) / rows;
 }

@@ -109,7 +109,7 @@ bool plot_has_widths(const cJSON *result)
 	return cJSON_GetArraySize(plot_member(plot_member(first_output(result), "accuracy"), "rows")) > 1;
 }
 
-/* What each number of rows took: CPU seconds where the result has them for all, else the rows themselves. */
+/* The cost of each number of rows: CPU seconds if the result has them for all, else the numbers of rows. */
 static double *costs_of(struct plot *plot, const cJSON *rows, int *n, bool *cpu)
 {
 	const cJSON *timed = plot_member(plot_member(plot->result, "timing"), "rows"), *row;
@@ -125,7 +125,7 @@ static double *costs_of(struct plot *plot, const cJSON *rows, int *n, bool *cpu)
 }
 
 static const struct pen GOAL = {
-    .ink = INK_TEXT, .width = 1.2, .dash = "2 3"}; // the half width that was asked for
+    .ink = INK_TEXT, .width = 1.2, .dash = "2 3"}; // half-width requested by the study
 
 static void draw_widths(struct plot *plot, const cJSON *output, struct panel *panel)
 {
@@ -242,7 +242,7 @@ bool plot_has_errors(const cJSON *result)
 	return cJSON_GetArraySize(plot_member(result, "rows")) > 0;
 }
 
-/* What is known of each row of a convergence study, and room for places. */
+/* The numbers of each row of a convergence study, and memory for positions. */
 struct points {
 	const double *cpu, *error; /* of all rows */
 	double *x, *y, *setting;
@@ -265,7 +265,7 @@ static const char *method_text(const cJSON *row, double error, double cpu, char 
 	return text;
 }
 
-/* The rows of a method from its largest step or tolerance on: in that order, as times of single runs cross. */
+/* Draws the rows of a method in descending order of step or tolerance, as measured times of single runs may be out of order. */
 static void draw_method(struct plot *plot, const struct panel *panel, const struct key *key,
                         const char *method, int series, const struct points *points)
 {

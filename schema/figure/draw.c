@@ -1,4 +1,4 @@
-/* draw.c - the pen: documents, texts, lines and marks; axes are in axis.c. */
+/* draw.c - draws SVG documents, texts, lines, marks and legends; axes are in axis.c. */
 #include "schema/figure/draw.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 
 enum { MARGIN = 20 };
 
-// on white paper and on a dark screen; each at least 4.5 to 1 against its paper, but for the grid
+// on white paper and on a dark screen; contrast at least 4.5:1 against the background, except the grid
 static const struct {
 	const char *light, *dark;
 } INKS[N_INKS] = {
@@ -54,7 +54,7 @@ static void put_attribute(struct drawing *drawing, const char *name, double valu
 	put(drawing, "\"");
 }
 
-/* The bytes of the UTF-8 character at `text`, 0 at its end; a text from a JSON document has no others. */
+/* Number of bytes of the UTF-8 character at `text`, 0 at its end; texts from JSON documents are valid UTF-8. */
 static size_t character(const char *text)
 {
 	unsigned char c = (unsigned char)*text;
@@ -65,7 +65,7 @@ static size_t character(const char *text)
 	return n;
 }
 
-/* Whether a character would steer the reader of the text, or is none of XML's. */
+/* Whether a character is a control or bidirectional character, or not allowed in XML. */
 static bool steers(const char *text, size_t n)
 {
 	const unsigned char *c = (const unsigned char *)text;
@@ -79,7 +79,7 @@ static bool steers(const char *text, size_t n)
 	       (code >= 0x2066 && code <= 0x2069) || code == 0xFEFF || (n == 3 && code >= 0xFFFE);
 }
 
-/* Text of a document as XML or HTML, up to `most` bytes or its end.
+/* Writes a text as XML or HTML, up to `most` bytes or its end.
  *
  * Test     unit_figure: a_name_stays_text
  */
@@ -114,7 +114,7 @@ static void grow(struct drawing *drawing, double y)
 	drawing->height = fmax(drawing->height, y);
 }
 
-/* Puts the head before what was drawn.
+/* Puts the head of the document before the drawing.
  *
  * Test     unit_figure: every_figure_of_every_example_is_well_formed_and_within_its_view_box
  */
@@ -152,7 +152,7 @@ char *draw_take(struct drawing *drawing, const char *title, const char *sentence
 
 /* ---- text ---- */
 
-// widths of ' ' to '~' in thousandths of the size, those of Helvetica
+// widths of ' ' to '~' in Helvetica, in thousandths of the font size
 static const short WIDTHS[] = {
     278, 278, 355, 556, 556, 889, 667, 191, 333, 333, 389, 584, 278, 333,  278, 278, 556, 556, 556,
     556, 556, 556, 556, 556, 556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667,
@@ -162,7 +162,7 @@ static const short WIDTHS[] = {
 
 static double width_of(const char *text, size_t n, double size)
 {
-	// other fonts are up to an eighth wider; of other characters the widest are squares, raised digits are small
+	// other fonts are up to 1/8 wider; characters outside ASCII are at most square, superscript digits are small
 	double em = n == 3 && strncmp(text, "\xE2\x81", 2) == 0 ? 400
 	            : n > 1                                     ? (n == 2 ? 650 : 1000)
 	            : *text >= ' ' && *text <= '~'              ? WIDTHS[*text - ' ']
@@ -178,10 +178,10 @@ double draw_width(const char *text, double size)
 	return width;
 }
 
-/* Width of a bold text over that of a plain one, in the widest of common fonts (DejaVu Sans). */
+/* Width of bold text over width of regular text, in the widest common font (DejaVu Sans). */
 static const double BOLD = 1.12;
 
-/* The first bytes of a text that fit in a width beside an ellipsis; all of them if it fits. */
+/* Number of leading bytes of a text that fit in a width together with an ellipsis; all bytes if the text fits. */
 static size_t fitting(const char *text, double size, double fit)
 {
 	const char *at = text;
@@ -193,7 +193,7 @@ static size_t fitting(const char *text, double size, double fit)
 	return (size_t)(at - text);
 }
 
-/* The last bytes of a text that fit in a width. */
+/* Number of trailing bytes of a text that fit in a width. */
 static size_t fitting_last(const char *text, double size, double fit)
 {
 	size_t whole = strlen(text), from = whole;
@@ -209,7 +209,7 @@ static size_t fitting_last(const char *text, double size, double fit)
 	return whole - from;
 }
 
-/* Writes a text; one whose middle is left out, as names often differ at their ends, has the whole of it for its title. */
+/* Writes a text.  Of a long text the middle is left out, as names often differ at their ends; its title is the whole text. */
 void draw_text(struct drawing *drawing, const struct label *label, const char *text)
 {
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
@@ -251,7 +251,7 @@ void draw_text(struct drawing *drawing, const struct label *label, const char *t
 	grow(drawing, label->y + size / 3);
 }
 
-/* The last blank among the first n bytes, one between a number and its unit only where there is no other; 0: none. */
+/* The last blank among the first n bytes, preferably not after a digit, to keep a number with its unit; 0: none. */
 static size_t last_blank(const char *text, size_t n)
 {
 	size_t any = 0;
@@ -259,7 +259,7 @@ static size_t last_blank(const char *text, size_t n)
 		const unsigned char before = (unsigned char)text[blank - 1];
 		if (text[blank] != ' ')
 			continue;
-		// a digit, or the last byte of a superscript one
+		// a digit, or the last byte of a superscript digit
 		if ((before < '0' || before > '9') && before < 0x80)
 			return blank;
 		any = any ? any : blank;
@@ -357,7 +357,7 @@ void draw_curve(struct drawing *drawing, const struct pen *pen, int n, const dou
 	}
 	if (!any)
 		return;
-	// a line of no length shows by its round ends
+	// a line of zero length is visible by its round caps
 	put(drawing, dots ? "<path fill=\"none\" stroke-linecap=\"round\""
 	                  : "<path fill=\"none\" stroke-linejoin=\"round\"");
 	put_stroke(drawing, pen);
@@ -409,7 +409,7 @@ const char *draw_dash(int series)
 	return DASHES[series % 4];
 }
 
-// corners of the shapes at radius 1; the first, with none, is a circle
+// corners of the shapes at radius 1; the first shape has no corners: a circle
 static const struct {
 	int n;
 	double x[4], y[4];

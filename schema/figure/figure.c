@@ -1,4 +1,4 @@
-/* figure.c - the table of figures: from the bytes of a result to those of a picture. */
+/* figure.c - the table of figures: from a result document to an SVG picture. */
 #include "schema/figure/figure.h"
 
 #include <math.h>
@@ -69,7 +69,7 @@ static bool listed(const char *list, const char *word)
 	return false;
 }
 
-/* Whether every choice is one of the figure and has a value that it takes; what is wrong goes to `detail`. */
+/* Whether every given argument belongs to the figure and is valid; if not, `detail` has the error message. */
 static bool choice_taken(const struct figure_row *row, const struct figure_choice *choice, char *detail,
                          size_t size)
 {
@@ -124,7 +124,7 @@ static enum figure_status draw(const struct figure_row *row, struct plot *plot, 
 	return figure->svg ? FIGURE_DRAWN : out_of_memory(figure);
 }
 
-/* Writes what is true of a figure that a result has not, and which ones it has. */
+/* Writes why a result does not have a figure, and which figures it has. */
 static void absent(const struct figure_row *row, const cJSON *result, bool sampled, struct figure *figure)
 {
 	const char *kind = plot_text(result, "kind"), *before = "; it has: ";
@@ -141,13 +141,13 @@ static void absent(const struct figure_row *row, const cJSON *result, bool sampl
 		}
 }
 
-/* Draws a figure of a parsed result, by choices that it takes. */
+/* Draws a figure of a parsed result with valid arguments. */
 enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
                              const struct figure_source *source, const struct figure_choice *choice,
                              struct figure *figure)
 {
 	*figure = (struct figure){0};
-	// what is drawn from samples alone needs no result
+	// figures of samples can be drawn without a result
 	if ((row->sampled && !source->samples) || (plot_is_result(result) && !figure_shows(row, result))) {
 		absent(row, result, source->samples, figure);
 		return FIGURE_ABSENT;
@@ -161,8 +161,8 @@ enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
 /* Draws a figure.
  *
  * Given    name     of a row
- *          choice   texts of a user
- * Returns  value    what came of it; figure->svg is for the caller to free
+ *          choice   arguments as the user wrote them
+ * Returns  value    status; the caller frees figure->svg
  * Test     unit_figure: every_figure_of_every_example_is_well_formed_and_within_its_view_box
  */
 enum figure_status figure_draw(const char *name, const struct figure_source *source,

@@ -1,4 +1,4 @@
-/* figure.h - pictures of results, as SVG: a table of figures and one function that draws them.
+/* figure.h - figures of results as SVG: a table of figures and a function that draws them.
  *
  *   struct figure_source source = {.json = json, .length = length};
  *   struct figure_choice choice = {.output = "impulse"};
@@ -7,7 +7,7 @@
  *       fwrite(figure.svg, 1, figure.length, stdout);
  *   free(figure.svg);
  *
- * The same bytes and choices give the same picture.  Any thread. */
+ * The same result and choices give the same bytes.  Any thread. */
 #ifndef FIGURE_H
 #define FIGURE_H
 
@@ -20,7 +20,7 @@
 	X(heights) X(impacts) X(timeline) X(errors) X(separation) X(fragility) \
 	X(suite)
 
-/* What can be chosen of a figure: X(name, values between spaces or NULL, lowest, highest, text). */
+/* Arguments of figures: X(name, values between spaces or NULL, lowest, highest, text). */
 #define FIGURE_ARGUMENTS(X)                                                                                   \
 	X(cell,     NULL,                        0, 1000000, "cell of a swept study, from 0")                      \
 	X(contact,  NULL,                        0, 1000000, "contact of a row of buildings, from 0 (default: 0)")  \
@@ -36,7 +36,7 @@
 	X(width,    NULL,                        320, 2400,  "width in pixels (default: 1120)")
 // clang-format on
 
-/* Each as its text, NULL: the default. */
+/* Arguments as text, NULL: the default. */
 struct figure_choice {
 #define X(name, values, lowest, highest, text) const char *name;
 	FIGURE_ARGUMENTS(X)
@@ -45,46 +45,46 @@ struct figure_choice {
 
 struct figure_row {
 	const char *name;  /* "indices" */
-	const char *kind;  /* of the studies that have it */
-	const char *takes; /* its arguments, between spaces */
-	const char *table; /* of a result's CSV tables, the one with its numbers; NULL: the CSV of the result */
-	bool sampled;      /* it is drawn from the samples too, not from the result alone */
-	const char *text;  /* one line */
-	const char *needs; /* what a result of its kind may lack; NULL: nothing */
+	const char *kind;  /* kind of study with this figure */
+	const char *takes; /* names of its arguments, between spaces */
+	const char *table; /* CSV table of the result with its numbers; NULL: the default table */
+	bool sampled;      /* needs the samples besides the result */
+	const char *text;  /* description in one line */
+	const char *needs; /* what it needs and a result of the kind may lack; NULL: nothing */
 };
 
-/* The rows, the last one has no name. */
+/* The rows; the last one has name NULL. */
 extern const struct figure_row figure_rows[];
 
 enum figure_status {
 	FIGURE_DRAWN,
-	FIGURE_UNKNOWN, /* no figure has that name */
+	FIGURE_UNKNOWN, /* unknown name */
 	FIGURE_ABSENT,  /* the result has no such figure */
-	FIGURE_CHOICE,  /* a choice is not one */
-	FIGURE_RESULT,  /* the bytes are no result */
+	FIGURE_CHOICE,  /* an argument is invalid */
+	FIGURE_RESULT,  /* the JSON is not a result */
 	FIGURE_NOMEM,
 };
 
 struct figure_source {
 	const char *json; /* (length) a result */
 	size_t length;
-	const char *samples; /* (n_samples) CSV and a NUL, for the figures that need it; NULL: none */
+	const char *samples; /* (n_samples) CSV, zero-terminated, for figures that need samples; NULL: none */
 	size_t n_samples;
 };
 
 struct figure {
-	char *svg; /* (length) on the heap, and a NUL; NULL unless drawn */
+	char *svg; /* (length) on the heap, zero-terminated; NULL unless drawn */
 	size_t length;
-	char detail[240]; /* unless drawn: a sentence */
+	char detail[240]; /* unless drawn: an error message */
 };
 
 const struct figure_row *figure_row(const char *name); /* NULL: none */
 enum figure_status figure_draw(const char *name, const struct figure_source *source,
                                const struct figure_choice *choice, struct figure *figure);
 
-/* The figures that a result has, as JSON: name, title, arguments, table and a link that begins with `base`; those of
- * samples when the source has some.
- * NULL: the bytes are no result, or out of memory. */
+/* The figures of a result, as JSON: name, title, arguments, table and a link that begins with `base`; figures that need
+ * samples only if the source has samples.
+ * NULL: not a result, or out of memory. */
 char *figure_list(const struct figure_source *source, const char *base, size_t *length);
 
 /* Whether a result has a figure. */

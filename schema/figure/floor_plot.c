@@ -1,4 +1,4 @@
-/* floor_plot.c - the floor spectra of a floor_spectrum. */
+/* floor_plot.c - the floor spectra of a floor_spectrum study. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@ bool plot_has_spectra(const cJSON *result)
 	return cJSON_GetArraySize(plot_member(result, "spectra")) > 0;
 }
 
-// how a spectrum is drawn, and what it is called
+// name, legend text and line of each spectrum
 static const struct {
 	const char *name, *text, *dash;
 	enum ink ink;
@@ -37,7 +37,7 @@ static int style_of(const char *name)
 	return -1;
 }
 
-/* The chosen spectra that the result has; 0: a fault. */
+/* The chosen spectra of the result; 0: invalid, see plot->fault. */
 static int spectra_of(struct plot *plot, const cJSON **spectra)
 {
 	const char *names = plot->choice->spectra ? plot->choice->spectra : "pounding,free,dirac_peaks";
@@ -72,7 +72,7 @@ static const cJSON *spectrum_list(const cJSON *spectrum, const char *name)
 	return plot_member(spectrum, name);
 }
 
-/* Thin lines at 2 n f_1, where a periodic train of pulses has its peaks. */
+/* Draws thin lines at 2 n f_1, the peaks of a periodic pulse train. */
 static void draw_harmonics(struct plot *plot, const struct panel *panel, bool periods)
 {
 	const cJSON *peaks = plot_member(plot->result, "peaks"), *peak = plot_first(peaks);

@@ -6,7 +6,7 @@
 
 enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50, MARKS_MOST = 200, PANEL_NARROWEST = 200 };
 
-/* a number of every storey, and how it is drawn */
+/* A quantity of every storey, and its labels. */
 struct quantity {
 	const char *list, *with, *without; /* members of a building and of its elements */
 	const char *label, *unit;
@@ -41,7 +41,7 @@ bool plot_has_heights(const cJSON *result)
 	return building_of(plot_first(signals_of(result, cell)), 0) != NULL;
 }
 
-/* Mean over the signals of a number of a storey; what is not finite is left out. */
+/* Mean over the signals of a number of a storey; values that are not finite are ignored. */
 static double mean_of(const cJSON *signals, int b, const char *list, int i, const char *member)
 {
 	const cJSON *signal;
@@ -70,7 +70,7 @@ static double value_of(const cJSON *signals, int b, const struct quantity *quant
 	return mean_of(signals, b, quantity->list, i, free ? quantity->without : quantity->with);
 }
 
-/* The range of a quantity over all buildings, which share an axis to be compared. */
+/* The range of a quantity over all buildings, which share an axis so that they can be compared. */
 static struct range range_of(const cJSON *signals, const struct quantity *quantity)
 {
 	struct range range = RANGE_EMPTY;
@@ -81,7 +81,7 @@ static struct range range_of(const cJSON *signals, const struct quantity *quanti
 	return range;
 }
 
-/* Whether each story has a mark with its values; those of a whole street would be a file of their own. */
+/* Whether each story has a mark with its values; marks of very many stories would make the file too large. */
 static bool is_marked(const cJSON *signals)
 {
 	int n = 0;
@@ -90,7 +90,7 @@ static bool is_marked(const cJSON *signals)
 	return n <= MARKS_MOST;
 }
 
-/* One building: the stories from the ground up, without and with pounding. */
+/* Draws one building: the stories from the ground up, without and with pounding. */
 static void draw_building(struct plot *plot, const cJSON *signals, int b, const struct quantity *quantity,
                           struct panel *panel)
 {
@@ -132,7 +132,7 @@ void plot_heights(struct plot *plot)
 	if (*plot->fault)
 		return;
 	for (int b = 0; b < BUILDINGS_MOST; b++)
-		if (storeys_of(signals, b) > 0) { // a wall has none
+		if (storeys_of(signals, b) > 0) { // a rigid wall has no storeys
 			buildings[n++] = b;
 			tallest = storeys_of(signals, b) > tallest ? storeys_of(signals, b) : tallest;
 		}

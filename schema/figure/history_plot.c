@@ -1,11 +1,11 @@
-/* history_plot.c - of the samples of a floor_spectrum: `history` of both oscillators, `force` of their contacts. */
+/* history_plot.c - figures of the samples of a floor_spectrum study: `history` of both oscillators, `force` of their contacts. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "schema/figure/plot.h"
 
-// what is drawn of a history, each in a panel: columns of the samples, those there are
+// panels of a history, each with up to two columns of the samples
 static const struct series {
 	const char *title, *unit;
 	double height;
@@ -26,7 +26,7 @@ static const char *const RIGHT_DASH = "5 2";
 
 enum { N_SERIES = sizeof SERIES / sizeof SERIES[0] };
 
-/* A line through all points of a history: of each pixel across the first, lowest, highest and last. */
+/* Draws a line through a history with many points: per pixel column only the first, lowest, highest and last point. */
 static void draw_dense(struct plot *plot, const struct pen *pen, const struct panel *panel,
                        const double *time, const double *value, int n)
 {
@@ -39,7 +39,7 @@ static void draw_dense(struct plot *plot, const struct pen *pen, const struct pa
 			low = value[last] < value[low] ? last : low;
 			high = value[last] > value[high] ? last : high;
 		}
-		if (last == k) { // it has no place
+		if (last == k) { // not finite
 			k++;
 			continue;
 		}
@@ -55,7 +55,7 @@ static void draw_dense(struct plot *plot, const struct pen *pen, const struct pa
 		draw_curve(&plot->d, pen, at, x, y);
 }
 
-/* The chosen rows of the samples, at least one; false: a fault. */
+/* Reads the chosen rows of the samples, at least one; false: invalid, see plot->fault. */
 static bool table_chosen(struct plot *plot, struct plot_table *table)
 {
 	if (plot_table(plot, table) && table->n == 0)
@@ -80,7 +80,7 @@ bool plot_has_history(const cJSON *result)
 	return plot_has_spectra(result);
 }
 
-/* A tick at each begin of a contact, at most one per pixel; returns the number of contacts. */
+/* Draws a tick at the start of each contact, at most one per pixel; returns the number of contacts. */
 static int draw_begins(struct plot *plot, const struct panel *panel, const struct plot_table *table)
 {
 	const double *time = plot_table_column(table, "time_s"),
@@ -118,7 +118,7 @@ void plot_history(struct plot *plot)
 	snprintf(more, sizeof more, "ground motion %d; ticks above the displacement: a contact begins",
 	         table.signal);
 	plot_head(plot, "Motion and impacts", more);
-	// of a row of buildings there is one floor
+	// a row of buildings has the history of one floor only
 	const bool both = any_known(&table, "u_right_m");
 	const struct key keys[2] = {{.name = "left", .pen = {.width = 1.5}},
 	                            {.name = "right", .pen = {.ink = 1, .width = 1.5, .dash = RIGHT_DASH}}};
@@ -168,7 +168,7 @@ bool plot_has_force(const cJSON *result)
 
 enum { LOOPS_MOST = 200, POINTS_MOST = 16000, SIDE_MOST = 640 };
 
-/* A contact: rows [first, last] of the samples. */
+/* The rows [first, last] of the samples during one contact. */
 struct loop {
 	int first, last;
 	double peak; /* largest force [N] */
@@ -180,8 +180,8 @@ static int by_peak(const void *one, const void *other)
 	return a->peak != b->peak ? (a->peak < b->peak) - (a->peak > b->peak) : a->first - b->first;
 }
 
-/* The contacts, from that of the largest force on; each begins and ends with the rows without force beside it, at which the
- * overlap is zero or the force has changed at once. */
+/* Finds the contacts, in descending order of their largest force.  Each includes the rows with zero force before and after it, where
+ * the overlap is zero or the force has jumped. */
 static int loops_of(const struct plot_table *table, const double *gap, const double *force,
                     struct loop *loops)
 {
@@ -199,7 +199,7 @@ static int loops_of(const struct plot_table *table, const double *gap, const dou
 	return n;
 }
 
-/* One contact, without the points that lie on the one before them; how many were drawn. */
+/* Draws one contact without points that coincide with the previous one; returns the number of points drawn. */
 static int draw_loop(struct plot *plot, const struct panel *panel, const struct pen *pen,
                      const struct loop *loop, const double *gap, const double *force)
 {
@@ -207,7 +207,7 @@ static int draw_loop(struct plot *plot, const struct panel *panel, const struct 
 	double *x = plot_memory(plot, 2 * sizeof *x * (size_t)rows), *y = x ? x + rows : NULL;
 	int n = 0;
 	for (int k = loop->first; x && k <= loop->last; k++) {
-		// a row beside the contact may be before the bodies met
+		// in the row before or after the contact the bodies may be separated
 		const double overlap = force[k] == 0 ? fmax(-gap[k], 0) : -gap[k];
 		const double at_x = axis_at(&panel->across, overlap), at_y = axis_at(&panel->up, force[k]);
 		if (n > 0 && k < loop->last && hypot(at_x - x[n - 1], at_y - y[n - 1]) < 0.8)
@@ -241,7 +241,7 @@ void plot_force(struct plot *plot)
 			range_add(&across, force[k] == 0 ? 0 : -gap[k]);
 			range_add(&up, force[k]);
 		}
-	// what a contact ends with is zero up to rounding
+	// force and overlap at the ends of a contact are zero up to rounding
 	across.low = across.low > -1e-6 * across.high ? 0 : across.low;
 	up.low = up.low > -1e-6 * up.high ? 0 : up.low;
 	if (n)

@@ -31,10 +31,10 @@ bool plot_has_impacts(const cJSON *result)
 	return plot_member(signal, "buildings") && cJSON_GetArraySize(plot_member(signal, "contacts")) > 0;
 }
 
-/* What is known of a contact over the signals. */
+/* A quantity of one contact over the signals. */
 struct impacts {
 	int left;        /* building */
-	double level[2]; /* of it and of its right neighbor */
+	double level[2]; /* on the building and on its right neighbor */
 	double mean;     /* NAN: none */
 	struct range range;
 };
@@ -65,7 +65,7 @@ static struct impacts impacts_of(const cJSON *signals, int contact, const struct
 	return impacts;
 }
 
-/* The levels of one pair of neighbors, from the ground up. */
+/* Draws the levels of one pair of neighbors, from the ground up. */
 static void draw_pair(struct plot *plot, const struct impacts *impacts, int n,
                       const struct quantity *quantity, struct panel *panel)
 {

@@ -7,7 +7,7 @@
 
 enum { ROW = 26, PANEL_NARROWEST = 320, OUTPUTS_MOST = 12, ORDINATES_MOST = 64, PAIR = 46 };
 
-// what is drawn of an input: an index, its interval, hollow or filled
+// marks of an input: an index with its interval, hollow or filled
 static const struct part {
 	const char *name, *low, *high, *text;
 	bool hollow;
@@ -41,7 +41,7 @@ static const char *value_text(const cJSON *input, const struct part *part, char 
 
 /* ---- one output: inputs in rows ---- */
 
-/* The part of the variance that the signals make. */
+/* Draws the variance fraction due to signal randomness. */
 static void draw_noise(struct plot *plot, const struct axis *axis, const cJSON *output, double names,
                        double y)
 {
@@ -57,7 +57,7 @@ static void draw_noise(struct plot *plot, const struct axis *axis, const cJSON *
 		return;
 	}
 	draw_box(&plot->d, &(struct pen){.ink = INK_MUTED, .opacity = 0.55}, zero, y - 5, at - zero, 10);
-	// behind the bar, or at its end where there is no room behind it
+	// after the bar, or inside at its end if there is no room after it
 	bool inside = at + 50 > axis->end;
 	draw_text(&plot->d,
 	          &(struct label){.x = inside ? at - 6 : at + 6, .y = y + 4, .anchor = inside ? 'e' : 's'},
@@ -126,7 +126,7 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 	draw_noise(plot, &axis, output, names, y);
 }
 
-/* The range of what is drawn of some outputs: 0 and 1 at least. */
+/* The range of the indices of some outputs, at least [0, 1]. */
 static struct range range_of(const struct plot *plot, const cJSON *const *outputs, int n)
 {
 	struct range range = {0, 1};
@@ -201,7 +201,7 @@ static double draw_keys(struct plot *plot, bool band)
 	return draw_legend(&plot->d, n, keys, plot->y);
 }
 
-/* The input with the largest ST of the first output, for those who do not see the picture. */
+/* Describes the input with the largest ST of the first output in words, for readers who do not see the picture. */
 static void say_largest(struct plot *plot, const cJSON *output)
 {
 	const cJSON *input, *largest = NULL;
@@ -235,7 +235,7 @@ void plot_indices(struct plot *plot)
 	plot_head(plot, "Sobol' indices with 95 % intervals", plot_sweep_text(cell, 0, NULL, sweep));
 	double y = draw_keys(plot, n_plain < n) + 8;
 	int inputs = cJSON_GetArraySize(plot_member(outputs[0], "inputs"));
-	// few ordinates are outputs like others
+	// one or two ordinates are drawn like other outputs
 	bool curves = n - n_plain > 2;
 	int n_rows = curves ? n_plain : n;
 	int columns = panel_columns(&plot->d, n_rows, PANEL_NARROWEST);
@@ -289,7 +289,7 @@ static int place_of(const cJSON *inputs, const char *name)
 	return -1;
 }
 
-/* A square for each pair below the diagonal; `names` is the room for the inputs' names. */
+/* Draws a square for each pair below the diagonal; `names` is the width for the inputs' names. */
 static void draw_pairs(struct plot *plot, const cJSON *output, double x, double y, double side, double names)
 {
 	const cJSON *inputs = plot_member(output, "inputs"), *pair, *input;
@@ -308,7 +308,7 @@ static void draw_pairs(struct plot *plot, const cJSON *output, double x, double 
 			                          .anchor = 'e',
 			                          .fit = names - 6},
 			          name);
-		// above the first square of its column, where its row ends
+		// above the first square of the column, at the end of the input's row
 		if (row < n - 1)
 			draw_text(&plot->d,
 			          &(struct label){.x = x + names + row * side + 4,
@@ -380,7 +380,7 @@ void plot_pairs(struct plot *plot)
 	names = fmin(names, 140);
 	double side = fmax(fmin((plot->d.width - 3 * PLOT_MARGIN - names) / (n_inputs - 1), 72), PAIR);
 	double whole = names + (n_inputs - 1) * side + PLOT_MARGIN + 20, x = PLOT_MARGIN, y = plot->y + 8;
-	// squares below a size that holds their numbers are not drawn: a matrix of many inputs is wider than asked for
+	// squares must have room for their numbers, so a matrix of many inputs is wider than requested
 	plot->d.width = fmax(plot->d.width, whole + PLOT_MARGIN);
 	for (int o = 0; o < n; o++) {
 		if (x > PLOT_MARGIN && x + whole > plot->d.width) {

@@ -1,4 +1,4 @@
-/* plot.c - what the figures have in common: numbers and words of a result, the head of a figure. */
+/* plot.c - functions that all figures use: numbers and names of a result, the head of a figure. */
 #include "schema/figure/plot.h"
 
 #include <math.h>
@@ -143,7 +143,7 @@ const char *plot_output_name(const cJSON *output, char text[PLOT_TEXT])
 	return text;
 }
 
-// the ends of names that are units
+// suffixes of names that are units
 static const struct {
 	const char *end, *unit;
 } UNITS[] = {{"_hz", "Hz"},   {"_kg", "kg"}, {"_m_s2", "m/s²"}, {"_m_s", "m/s"}, {"_n_s", "N s"},
@@ -162,7 +162,7 @@ static const char *unit_of(const char *name, size_t *n)
 	return NULL;
 }
 
-/* Of what a path is: "left ", "building 2 ". */
+/* The body to which a path belongs: "left ", "building 2 ". */
 static const char *body_of(const char *path, char text[32])
 {
 	static const struct {
@@ -182,7 +182,7 @@ static const char *body_of(const char *path, char text[32])
 	                                                   : "";
 }
 
-/* "left frequency", and its unit or NULL. */
+/* The name of a path in words, "left frequency"; returns its unit or NULL. */
 static const char *words_of(const char *path, char text[PLOT_TEXT])
 {
 	const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
@@ -225,7 +225,7 @@ const char *plot_sweep_text(const cJSON *cell, int n_but, const char *const *but
 		const char *unit = words_of(value->string, words);
 		bool word = cJSON_IsString(value);
 		char *shown = word ? value->valuestring : NULL;
-		// a law is known by its name
+		// names of laws need no "law type" before them
 		n +=
 		    snprintf(text + n, (size_t)(PLOT_TEXT - n), "%s%.40s%s%.60s%s%s", n ? ", " : "",
 		             word && strcmp(words, "law type") == 0 ? "" : words,
@@ -240,7 +240,7 @@ const char *plot_sweep_text(const cJSON *cell, int n_but, const char *const *but
 
 /* ---- the head ---- */
 
-enum { HEAD_LINES = 4 }; /* of the name of a study, and of what else is said above a figure */
+enum { HEAD_LINES = 4 }; /* lines of the study's name, and of the text after it */
 
 void plot_head(struct plot *plot, const char *title, const char *more)
 {
@@ -254,7 +254,7 @@ void plot_head(struct plot *plot, const char *title, const char *more)
 	    &(struct label){.x = PLOT_MARGIN, .y = 28, .size = DRAW_HEAD_SIZE, .bold = true, .fit = width}, title,
 	    3);
 	snprintf(both, sizeof both, "%.400s%s%s", name, *name && *more ? "; " : "", more);
-	// in one line if that has room
+	// on one line if both fit
 	const bool fits = draw_width(both, DRAW_TEXT_SIZE) <= width;
 	const char *lines[] = {fits ? both : name, fits ? "" : more};
 	for (int k = 0; k < 2; k++)
@@ -272,7 +272,7 @@ void plot_head(struct plot *plot, const char *title, const char *more)
 	}
 }
 
-/* A remark below what was drawn. */
+/* Writes a note below the figure. */
 void plot_note(struct plot *plot, const char *format, ...)
 {
 	char text[2 * PLOT_TEXT];

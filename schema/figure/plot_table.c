@@ -1,4 +1,4 @@
-/* plot_table.c - samples as CSV: the rows of one signal in time, or all rows. */
+/* plot_table.c - reads samples from CSV: the rows of one signal in an interval of time, or all rows. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +9,8 @@
 
 enum { EVERY_SIGNAL = -1 };
 
-/* The rows of the signal, or of every one, with a number in [from, to] in the second column.  A sample is a number or empty; the
- * first columns are those of `head`. */
+/* Reads the rows of the signal, or of all signals, with a number in [from, to] in the second column.  A cell is a number or empty;
+ * the header must start with `head`. */
 static bool table_read(struct plot *plot, const char *head, double from, double to, struct plot_table *table)
 {
 	const char *at = plot->source->samples, *end = at + plot->source->n_samples;
@@ -36,10 +36,10 @@ static bool table_read(struct plot *plot, const char *head, double from, double 
 		at += strspn(at, "\r\n");
 		if (at >= end || !*at)
 			break;
-		// most rows are of other signals, and their numbers are not read
+		// most rows belong to other signals: skip their numbers
 		bool wanted = true;
 		for (int c = 0; c < table->n_columns && wanted; c++) {
-			// a number does not begin on the next line
+			// strtod would skip white space into the next line
 			char *after = (char *)at;
 			row[c] = isspace((unsigned char)*at) ? NAN : strtod(at, &after);
 			row[c] = after == at ? NAN : row[c];
@@ -77,7 +77,7 @@ static double second_of(struct plot *plot, const char *name, const char *text, d
 
 /* Reads the rows of the chosen signal and time.
  *
- * Returns  value  false: a fault
+ * Returns  value  false: invalid, see plot->fault
  */
 bool plot_table(struct plot *plot, struct plot_table *table)
 {
@@ -94,7 +94,7 @@ bool plot_table(struct plot *plot, struct plot_table *table)
 
 /* Reads all rows.
  *
- * Returns  value  false: a fault
+ * Returns  value  false: invalid, see plot->fault
  */
 bool plot_table_whole(struct plot *plot, struct plot_table *table)
 {

@@ -1,9 +1,9 @@
 /* report.c - a result as one HTML page.
  *
- * 1. what study it is, warnings, and the notes of its result;
- * 2. its figures, those of single cells for each cell;
- * 3. its tables, read from the CSV that the result has;
- * 4. accuracy, what was run and what was left out; the study document. */
+ * 1. the study, warnings and notes of the result;
+ * 2. figures, for each cell if they show one cell;
+ * 3. tables, from the CSV of the result;
+ * 4. accuracy, runs made and runs left out, the study document. */
 #include "schema/figure/report.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static void put_element(struct report *report, const char *name, const char *tex
 	put(report, tag);
 }
 
-/* A table up to its first row, in a box of its own that scrolls where the page is narrow. */
+/* Starts a table up to its first row, in a box that scrolls on narrow pages. */
 static void table_begin(struct report *report, const char *title, const char *head)
 {
 	put(report, "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"");
@@ -78,7 +78,7 @@ static void table_end(struct report *report)
 	put(report, "</tbody>\n</table>\n</div>\n");
 }
 
-/* A text without the underscores of a name. */
+/* Writes a name with blanks in place of underscores. */
 static void put_words(struct report *report, const char *name)
 {
 	char words[80];
@@ -105,7 +105,7 @@ static void put_member(struct report *report, const cJSON *object, const char *n
 	put(report, "</td></tr>\n");
 }
 
-/* ---- what study it is ---- */
+/* ---- the study ---- */
 
 static void put_head(struct report *report)
 {
@@ -125,7 +125,7 @@ static void put_head(struct report *report)
 	put_member(report, result, "kind", "kind of study");
 	put_member(report, plot_member(result, "design"), "method", "design");
 	put_member(report, plot_member(result, "design"), "rows", "rows");
-	// none is run where no output needs them, or there is no contact
+	// left out if no run has pounding: no output needs it, or there is no contact
 	const cJSON *work = plot_member(result, "work"), *pounding = plot_member(work, "pounding_runs");
 	if (plot_number(pounding, "run") > 0 || plot_number(work, "never_touching") > 0)
 		put_member(report, pounding, "asked", "responses with pounding");
@@ -143,7 +143,7 @@ struct notes {
 	int times[NOTES_MOST], n;
 };
 
-/* Every note of a result, each text once. */
+/* Collects all notes of a result, each text once, with counts. */
 static void notes_collect(const cJSON *value, struct notes *notes)
 {
 	const cJSON *inside;
@@ -166,7 +166,7 @@ static void notes_collect(const cJSON *value, struct notes *notes)
 	}
 }
 
-/* What is valid in the study and probably not meant. */
+/* Writes the warnings of the study. */
 static void put_warnings(struct report *report)
 {
 	const cJSON *warnings = plot_member(report->result, "warnings"), *warning;
@@ -183,7 +183,7 @@ static void put_warnings(struct report *report)
 	put(report, "</ul>\n");
 }
 
-/* The widest interval, and why that of fewer rows may be narrower, as items of a list. */
+/* Writes the widest interval, and why an interval of fewer rows may be narrower, as list items. */
 static void put_widest(struct report *report)
 {
 	struct widest_interval widest;
@@ -200,7 +200,7 @@ static void put_widest(struct report *report)
 	reading_close(result);
 }
 
-/* Notes of the whole result, then, closed, those of its outputs and inputs. */
+/* Writes notes of the whole result, then notes of outputs and inputs in a closed <details>. */
 static void put_notes(struct report *report)
 {
 	static const char *const whole[] = {"partial", "stopping", "design", "accuracy"};
@@ -240,7 +240,7 @@ static bool takes_cell(const struct figure_row *row)
 	return strstr(row->takes, " cell ") != NULL;
 }
 
-/* Contacts of the gaps needed by a row of buildings, each of which has figures of its own; 1: there is no such choice. */
+/* Number of contacts with gaps needed in a row of buildings, each with its own figures; 1: the figure has no argument contact. */
 static int contacts_of(const struct report *report, const struct figure_row *row)
 {
 	const cJSON *cell = plot_first(plot_member(report->result, "cells"));
@@ -255,7 +255,7 @@ static void put_figure(struct report *report, const struct figure_row *row, int 
 	struct figure figure;
 	snprintf(number, sizeof number, "%d", cell);
 	snprintf(place, sizeof place, "%d", contact);
-	// its text is 6 points in print, and no larger than the page's own on a screen
+	// at this width its text is 6 points in print, and not larger than the page's text on a screen
 	const struct figure_choice choice = {.cell = takes_cell(row) && cell > 0 ? number : NULL,
 	                                     .contact = contact > 0 ? place : NULL,
 	                                     .width = "960"};
@@ -270,7 +270,7 @@ static void put_figure(struct report *report, const struct figure_row *row, int 
 	free(figure.svg);
 }
 
-/* Figures of the whole result, then those of each cell; of many cells the first figure alone. */
+/* Writes figures of the whole result, then figures of each cell; if there are many cells, only the indices of each. */
 static void put_figures(struct report *report)
 {
 	char text[PLOT_TEXT], line[PLOT_TEXT + 80];
@@ -305,7 +305,7 @@ static void put_figures(struct report *report)
 
 /* ---- tables ---- */
 
-/* Columns for specialists stay in the CSV. */
+/* Whether a column is shown; columns for specialists are only in the CSV. */
 static bool column_shown(const char *name)
 {
 	static const char *const hidden[] = {"_raw", "_pick_freeze", "_random_forest", "accuracy.", "partial."};
@@ -329,7 +329,7 @@ static void put_cell(struct report *report, const char *text, bool head)
 	put(report, head ? "</th>" : "</td>");
 }
 
-/* CSV as a table of HTML. */
+/* Writes CSV as an HTML table. */
 static void put_csv(struct report *report, const char *title, const char *csv, size_t length)
 {
 	const char *at = csv, *end = csv + length;
@@ -367,7 +367,7 @@ static bool put_table(struct report *report, const char *table, const char *titl
 	return n > 0;
 }
 
-/* Those that have names, or the one of a kind without. */
+/* Writes the tables with names, or the default table of a kind without such tables. */
 static void put_tables(struct report *report)
 {
 	bool any = false;
@@ -450,7 +450,7 @@ static void put_study(struct report *report, const char *study, size_t n_study)
 		while (line + n < end && line[n] != '\n' && line[n] != '\t')
 			n++;
 		draw_escaped(&report->w, line, n);
-		// the only control characters of a document that mean something here
+		// newline and tab: the only control characters that are kept
 		if (line + n < end)
 			writer_raw(&report->w, line + n, 1);
 		line += n + 1;
@@ -458,7 +458,7 @@ static void put_study(struct report *report, const char *study, size_t n_study)
 	put(report, "</pre>\n");
 }
 
-/* The page of a result.
+/* Writes the page of a result.
  *
  * Memory   allocates; the caller frees
  * Test     unit_report: a_report_has_every_figure_table_note_and_what_was_left_out

@@ -1,4 +1,4 @@
-/* separation_plot.c - how wide a gap has to be: `separation` over the gap, `fragility` over a swept intensity. */
+/* separation_plot.c - probability of pounding: `separation` over the gap, `fragility` over a swept intensity. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ bool plot_has_separation(const cJSON *result)
 	return plot_first(plot_member(contact ? contact : cell, "pounding")) != NULL;
 }
 
-/* What is known of the gap in a cell, of a row of buildings at the chosen contact; NULL: there is no such contact, and the fault says so. */
+/* The object with the gap results of a cell, or of the chosen contact in a row of buildings; NULL: no such contact, see plot->fault. */
 static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
 {
 	const cJSON *contacts = plot_member(cell, "contacts");
@@ -33,7 +33,7 @@ static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
 	return NULL;
 }
 
-/* "contact 2, levels 3 and 2 of buildings 0 and 1, PGA 1 m/s2"; the place goes into the buffer. */
+/* Writes "contact 2, levels 3 and 2 of buildings 0 and 1, PGA 1 m/s2" into the buffer. */
 static const char *place_text(const cJSON *needs, const char *sweep, char text[PLOT_TEXT])
 {
 	const cJSON *levels = plot_member(needs, "levels"), *first = plot_first(levels),
@@ -137,7 +137,7 @@ bool plot_has_fragility(const cJSON *result)
 	return plot_first(plot_member(result, "fragility")) != NULL;
 }
 
-/* Whether a cell is one of the set's: it has all that the set does not vary. */
+/* Whether a cell belongs to a set: all sweep values of the set are the cell's. */
 static bool in_set(const cJSON *set, const cJSON *cell)
 {
 	const cJSON *value;
@@ -149,7 +149,7 @@ static bool in_set(const cJSON *set, const cJSON *cell)
 	return true;
 }
 
-/* Draws a gap's curve and what the runs counted. */
+/* Draws the fragility curve of a gap and the fractions of runs with pounding. */
 static void draw_fragility(struct plot *plot, const cJSON *set, int g, int series, const struct panel *panel)
 {
 	const cJSON *curve = cJSON_GetArrayItem(plot_member(set, "curves"), g), *cell;
@@ -194,7 +194,7 @@ void plot_fragility(struct plot *plot)
 	cJSON_ArrayForEach(cell, plot_member(plot->result, "cells")) if (in_set(set, cell))
 	    range_add(&across, plot_number(plot_member(cell, "sweep"), intensity));
 	cJSON_ArrayForEach(curve, plot_member(set, "curves")) n_curves += isfinite(plot_number(curve, "median"));
-	// as many as there are distinct colors, evenly among those that have a curve
+	// as many gaps as there are distinct colors, evenly spaced among the gaps with a curve
 	int seen = 0;
 	cJSON_ArrayForEach(curve, plot_member(set, "curves"))
 	{

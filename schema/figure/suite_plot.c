@@ -1,4 +1,4 @@
-/* suite_plot.c - response spectra of ground motions, from what `pound motion --periods` prints. */
+/* suite_plot.c - response spectra of ground motions, from the output of `pound motion --periods`. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,14 +8,14 @@
 
 enum { LINES_MOST = 200, SIGNALS_MOST = 1000, POINTS_MOST = 20000 };
 
-/* Made by a command of its own: no result has it. */
+/* Drawn from the output of another command, so no result has this figure. */
 bool plot_has_suite(const cJSON *result)
 {
 	(void)result;
 	return false;
 }
 
-/* The spectra of a table, one after another: signal after signal the same periods. */
+/* The spectra of a table, signal by signal, all with the same periods. */
 struct spectra {
 	int n, n_periods;
 	const double *period, *psa; /* (n_periods), (n x n_periods) */

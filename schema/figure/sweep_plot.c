@@ -1,4 +1,4 @@
-/* sweep_plot.c - what changes over the cells of a swept study: `swept` of sensitivities, `responses`. */
+/* sweep_plot.c - figures over the cells of a swept study: `swept` of a sensitivity study, `responses` of a response study. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@ static const cJSON *cells_of(const cJSON *result)
 	return plot_first(cells);
 }
 
-/* The path of the swept number along the axis: the chosen one, else the last that is a number and has two values. */
+/* The path of the swept number along the axis: the chosen one, else the last path of a number with two or more values. */
 static const char *path_across(const struct plot *plot, const cJSON *result)
 {
 	const cJSON *first = cells_of(result), *value, *cell;
@@ -36,7 +36,7 @@ static const char *path_across(const struct plot *plot, const cJSON *result)
 	return path;
 }
 
-/* Whether two cells have the same sweep values, `but` aside. */
+/* Whether two cells have the same sweep values, ignoring the path `but`. */
 static bool alike(const cJSON *one, const cJSON *other, const char *but)
 {
 	const cJSON *value;
@@ -49,14 +49,14 @@ static bool alike(const cJSON *one, const cJSON *other, const char *but)
 	return true;
 }
 
-/* Cells that differ in nothing but the number across, in the order of that. */
+/* Cells that differ only in the swept number along the axis, in ascending order. */
 struct line {
 	const cJSON **cells; /* (n) */
 	double *x;
 	int n;
 };
 
-/* The lines of a result, at most `most`; `all` is how many there are. */
+/* The lines of a result, at most `most`; `all` is their total number. */
 static int lines_of(struct plot *plot, const char *path, int most, struct line *lines, int *all)
 {
 	const cJSON *cell, *first = cells_of(plot->result);
@@ -92,7 +92,7 @@ static int lines_of(struct plot *plot, const char *path, int most, struct line *
 	return n;
 }
 
-/* The axis of the swept number: logarithmic when its values span decades. */
+/* The axis of the swept number: logarithmic if its values span decades. */
 static struct axis axis_across(const struct line *line)
 {
 	struct range range = RANGE_EMPTY;
@@ -101,7 +101,7 @@ static struct axis axis_across(const struct line *line)
 	return range.low > 0 && range.high > 30 * range.low ? axis_log(range) : axis_linear(range);
 }
 
-/* The paths whose values are the same in the first cells of all lines (`same`), or not; that across is in both. */
+/* The paths whose values are the same in the first cells of all lines (`same`), or differ; both include the path along the axis. */
 static int paths_of(const struct line *lines, int n, const char *across, bool same,
                     const char *paths[PATHS_MOST])
 {
@@ -132,7 +132,7 @@ bool plot_has_swept(const cJSON *result)
 	return path_across(NULL, result) && cJSON_GetArraySize(plot_member(cells_of(result), "outputs")) > 0;
 }
 
-/* The output of a cell that is drawn in the row of another one: of the same name, or the amplification of the law. */
+/* The output of a cell to draw in a row: the output with the row's name, or the amplification that exists for the cell's law. */
 static const cJSON *same_output(const cJSON *cell, const cJSON *row)
 {
 	const cJSON *output;
@@ -191,7 +191,7 @@ static void draw_input_line(struct plot *plot, const struct panel *panel, const 
 	}
 }
 
-/* The outputs of all cells, the two amplifications as one. */
+/* The outputs of all cells, with the two amplifications in one row. */
 static int rows_of(struct plot *plot, const cJSON **rows, int *all)
 {
 	const char *chosen = plot->choice->output;
@@ -220,7 +220,7 @@ static int rows_of(struct plot *plot, const cJSON **rows, int *all)
 static const char *row_name(const struct plot *plot, const cJSON *row, char text[PLOT_TEXT])
 {
 	plot_output_name(row, text);
-	// in one row for laws with and without a yield displacement
+	// one row for laws with and without a yield displacement
 	if (!plot->choice->output && strstr(text, " amplification"))
 		snprintf(text, PLOT_TEXT, "amplification");
 	return text;
@@ -325,7 +325,7 @@ static const struct key PEAKS[] = {
     {.name = "right, with pounding", .mark = {.series = 1}, .marked = true},
 };
 
-/* One cell: each signal in a column, from without to with pounding. */
+/* Draws one cell: a column per signal, with a line from the peak without to the peak with pounding. */
 static void draw_signals(struct plot *plot, const cJSON *signals)
 {
 	const cJSON *signal;
@@ -375,7 +375,7 @@ static void wilson(double k, double n, double *low, double *high)
 	*high = (middle + half) / all;
 }
 
-/* Means over the signals of a cell; what is not finite is left out. */
+/* Mean over the signals of a cell; values that are not finite are ignored. */
 static double mean_peak(const cJSON *cell, int oscillator, bool free)
 {
 	const cJSON *signal;
@@ -490,7 +490,7 @@ static void draw_cells(struct plot *plot, const char *path, const char *title)
 	if (n == 0)
 		return;
 	int n_same = paths_of(lines, n, path, true, same), n_other = paths_of(lines, n, path, false, other);
-	// what is swept and the same in all panels shown
+	// swept values that are the same in all panels
 	plot_sweep_text(lines[0].cells[0], n_other, other, sweep);
 	snprintf(more, sizeof more, "means over the signals%s%s", *sweep ? "; " : "", sweep);
 	plot_head(plot, title, more);

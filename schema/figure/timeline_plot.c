@@ -1,4 +1,4 @@
-/* timeline_plot.c - the contacts of one ground motion in time, from the samples of a response. */
+/* timeline_plot.c - the contacts of one ground motion in time, from the samples of a response study. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,14 +7,14 @@
 
 enum { MARKS_MOST = 1000, PAIRS_MOST = 7 };
 
-static const double RADIUS_MOST = 9, RADIUS_LEAST = 1.2; /* of marks whose areas are impulses */
+static const double RADIUS_MOST = 9, RADIUS_LEAST = 1.2; /* of marks; their areas show impulses */
 
 bool plot_has_timeline(const cJSON *result)
 {
 	return plot_has_responses(result) || plot_has_impacts(result);
 }
 
-/* Whether the result, if there is one, has the chosen signal and cell: a list of contacts is empty without them, too. */
+/* Whether the result, if given, has the chosen signal and cell: without this check an invalid choice looks like no contacts. */
 static bool chosen_there(struct plot *plot, int signal)
 {
 	if (!plot_is_result(plot->result))
@@ -27,12 +27,12 @@ static bool chosen_there(struct plot *plot, int signal)
 	return !*plot->fault;
 }
 
-/* The contacts of a cell, those with the largest impulses if there are more than can be drawn. */
+/* The contacts of a cell to draw: the ones with the largest impulses if there are too many. */
 struct contacts {
 	int n, all;
 	const double *time, *duration, *speed, *impulse, *building, *level,
-	    *right_level; /* NULL: the samples have it not */
-	int *rows;        /* of the table  (n) */
+	    *right_level; /* columns; NULL: not in the samples */
+	int *rows;        /* rows in the table  (n) */
 	double largest, latest;
 	int strongest;
 };
@@ -77,7 +77,7 @@ static void contacts_read(struct plot *plot, const struct plot_table *table, str
 	contacts->largest = *order[0];
 }
 
-/* What a contact is, as the title of its mark. */
+/* The description of a contact, as the title of its mark. */
 static const char *contact_text(const struct contacts *c, int row, char text[PLOT_TEXT])
 {
 	char number[5][32], level[80] = "";
@@ -89,7 +89,7 @@ static const char *contact_text(const struct contacts *c, int row, char text[PLO
 	return text;
 }
 
-/* Two oscillators: a line as high as the impulse. */
+/* Two oscillators: draws a line per contact with the impulse as its height. */
 static void draw_stems(struct plot *plot, const struct contacts *c, struct panel *panel)
 {
 	char text[PLOT_TEXT];
@@ -106,7 +106,7 @@ static void draw_stems(struct plot *plot, const struct contacts *c, struct panel
 	}
 }
 
-/* The levels between a building and its right neighbor: a mark as large as the impulse. */
+/* The levels between a building and its right neighbor: draws a mark per contact whose area is the impulse. */
 static void draw_levels(struct plot *plot, const struct contacts *c, int building, double highest,
                         struct panel *panel)
 {

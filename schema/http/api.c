@@ -1,4 +1,4 @@
-/* The interface of poundd: operations, their arguments and errors. */
+/* api.c - the HTTP interface of poundd: operations, their arguments and errors. */
 #include "schema/http/api.h"
 
 #include <stdio.h>
@@ -77,7 +77,7 @@ const struct api_operation api_operations[] = {
 	[API_openapi] = {"GET", "/v1/openapi.json", "openapi", "this document", " 200=OpenAPI 304 ", .faults = 0},
 };
 
-/* Of the list, and of its page, whose script passes them on. */
+/* Arguments of the list, and of its page, whose script passes them to the list. */
 #define LISTED(operation) \
 	{operation, "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true}, \
 	{operation, "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true}, \
@@ -170,7 +170,7 @@ void api_expected(const struct api_argument *argument, char *text, size_t size)
 		snprintf(text, size, "%s", argument->text);
 }
 
-/* Whether the value of a query argument is one that it takes.
+/* Whether the value of an argument is valid.
  *
  * Test     unit_api: an_argument_takes_what_it_says
  */
@@ -190,7 +190,7 @@ bool api_takes(const struct api_argument *argument, const char *value)
 	return *value >= '0' && *value <= '9' && !*rest && number >= argument->min && number <= argument->max;
 }
 
-/* 16 hexadecimal digits at `text`: the id, else -1. */
+/* The id in the 16 hexadecimal digits at `text`; -1: invalid. */
 static long long id_at(const char *text)
 {
 	char digits[17] = {0};
@@ -201,7 +201,7 @@ static long long id_at(const char *text)
 	return id < 0 ? -1 : id;
 }
 
-/* Whether a path is that of an operation, and the id in it. */
+/* Whether a path matches an operation's path, and the id in it. */
 static bool matches(const char *path, int operation, long long *id)
 {
 	const char *form = api_operations[operation].path;
@@ -222,10 +222,10 @@ static bool matches(const char *path, int operation, long long *id)
 
 /* Finds the operation of a request.
  *
- * Given    method   as it came; HEAD is treated as GET
+ * Given    method   as received; HEAD counts as GET
  *          path     decoded, without arguments
  * Returns  id       of the study in the path, 0: none
- *          allow    methods of the path, for the header; "": there is no such path
+ *          allow    methods of the path, for the header Allow; "": no such path
  *          value    row of api_operations, -1: none
  * Test     unit_api: a_path_is_one_of_the_table_to_the_last_character
  */
@@ -250,9 +250,9 @@ int api_match(const char *method, const char *path, long long *id, char allow[64
 	return found;
 }
 
-/* The bytes of an error answer.
+/* The body of an error response.
  *
- * Given    fault      its kind
+ * Given    fault      kind of error
  *          detail     a sentence about this request
  *          problems   listed in it; NULL: none
  * Returns  value      (length) bytes of application/problem+json; NULL: out of memory

@@ -1,7 +1,7 @@
-/* api.h - what poundd can be asked and what it answers: a row for each operation, argument and fault.
+/* api.h - the HTTP interface of poundd: one row per operation, argument and kind of error.
  *
- * The server dispatches, checks arguments and makes problems by these rows, and the OpenAPI document is written from
- * them.  Constant; any thread. */
+ * The server dispatches requests, checks arguments and makes problem objects by these rows; the OpenAPI document is generated
+ * from them.  Constant; any thread. */
 #ifndef API_H
 #define API_H
 
@@ -11,7 +11,7 @@
 #include "schema/json/problems.h"
 
 // clang-format off
-/* What can be wrong with a request: X(enumerator, HTTP status, type, title). */
+/* Kinds of errors: X(enumerator, HTTP status, type, title). */
 #define API_FAULTS(X)                                                                     \
 	X(BAD_REQUEST,   400, "bad-request",            "Bad Request")                        \
 	X(MALFORMED,     400, "malformed-json",         "Malformed JSON")                     \
@@ -34,7 +34,7 @@
 	X(CORRUPT,       500, "result-corrupt",         "Stored Data Damaged")                \
 	X(UNAVAILABLE,   503, "unavailable",            "Service Unavailable")
 
-/* What can be asked for: X(operation, which is a row of api_operations and a function of routes.c). */
+/* Operations: X(operation); each is a row of api_operations and a function of routes.c. */
 #define API_OPERATIONS(X)                                                                 \
 	X(submit) X(list) X(status) X(erase)  X(posted)  X(results) X(samples) X(motions) X(figures) \
 	X(figure) X(cancel) X(records_put) X(records_get) \
@@ -48,7 +48,7 @@ enum api_fault {
 #define X(name, status, type, title) API_##name,
 	API_FAULTS(X)
 #undef X
-	    API_NO_FAULT /* and how many there are */
+	    API_NO_FAULT /* and the number of faults */
 };
 
 enum {
@@ -64,51 +64,51 @@ struct api_fault_row {
 };
 
 struct api_operation {
-	const char *method, *path, *name; /* {id} in a path is 16 hexadecimal digits,
-	                                     another name at its end what that argument takes */
-	const char *text;                 /* one line for people */
+	const char *method, *path, *name; /* in a path {id} is 16 hexadecimal digits, and
+	                                     {name} at the end a value of the path argument */
+	const char *text;                 /* description in one line */
 	const char *
-	    answers; /* of success, between spaces: "200=Page", its status and its object in the document, "204" */
+	    answers; /* successes, between spaces: a status and its object in the document, "200=Page", or "204" */
 	const char *media; /* further media types of success, between spaces; NULL: none */
-	unsigned faults;   /* 1 << API_X of those that are not everyone's */
+	unsigned faults;   /* 1 << API_X of faults besides api_faults_of_all */
 	bool open;         /* answered without a token */
 	bool takes_study;  /* its body is a study document */
 };
 
 extern const struct api_operation api_operations[API_N_OPERATIONS];
 extern const struct api_fault_row api_faults[API_NO_FAULT];
-extern const unsigned api_faults_of_all; /* that any operation may answer */
+extern const unsigned api_faults_of_all; /* faults of every operation */
 
 /* An argument of an operation. */
 struct api_argument {
-	const char *operation, *name; /* of api_operations[]; NULL: of any */
+	const char *operation, *name; /* name in api_operations[]; NULL: any */
 	const char *place;            /* "query", "header" or "path" */
-	const char *choices;          /* values it takes, between spaces; NULL: any, or a number */
-	int min, max;                 /* a whole number in [min, max], when max > 0 */
+	const char *choices;          /* valid values, between spaces; NULL: any, or a number */
+	int min, max;                 /* if max > 0: a whole number in [min, max] */
 	const char *absent;           /* its default; NULL: none */
 	const char *text;
-	int digits; /* it is so many hexadecimal digits, when > 0 */
-	bool blank; /* it may be empty, which is as if it were not there */
+	int digits; /* if > 0: it has so many hexadecimal digits */
+	bool blank; /* may be empty, which means absent */
 };
 
 extern const struct api_argument api_arguments[];
 extern const int api_arguments_count;
 
-/* The argument of that name, NULL: the operation has none. */
+/* The argument with that name; NULL: the operation has no such argument. */
 const struct api_argument *api_argument(int operation, const char *name, const char *place);
 
-/* The names of an operation's arguments of a place, between commas. */
+/* The comma-separated names of an operation's arguments in a place. */
 void api_names(int operation, const char *place, char *text, size_t size);
 
-/* What an argument takes, in words that fit behind "must be". */
+/* The valid values of an argument, as text that follows "must be". */
 void api_expected(const struct api_argument *argument, char *text, size_t size);
-bool api_takes(const struct api_argument *argument, const char *value); /* a query argument's value */
+bool api_takes(const struct api_argument *argument, const char *value); /* whether a value is valid */
 
-/* The operation that a method and a decoded path name, and the id in the path; `allow` has the methods of the path.
- * HEAD is GET.  -1: there is no such path, or it does not take the method. */
+/* The operation of a method and a decoded path, and the id in the path; `allow` lists the methods of the path.
+ * HEAD counts as GET.  -1: no such path, or the path does not support the method. */
 int api_match(const char *method, const char *path, long long *id, char allow[64]);
 
-/* The bytes of a problem (heap, NULL: out of memory); `problems` may be NULL. */
+/* A problem object as JSON (heap, NULL: out of memory); `problems` may be NULL. */
 char *api_problem(enum api_fault fault, const char *detail, const struct problems *problems, size_t *length);
 
 /* The OpenAPI 3.0 document (heap, NULL: out of memory). */

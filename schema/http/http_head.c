@@ -1,8 +1,8 @@
-/* The head of a request: target, headers, framing and host.
+/* http_head.c - checks the head of a request: target, headers, framing and host.
  *
- * libmicrohttpd takes what RFC 9112 forbids (two lengths, a length and a coding, NUL anywhere), and what two servers read
- * differently lets a request hide in another one's body; so the rules are applied here, to what it read.  A body's length
- * is stated before it: a chunked one is refused, as RFC 9112 section 6.3 lets a server do. */
+ * libmicrohttpd accepts requests that RFC 9112 forbids (two lengths, a length and a coding, NUL anywhere).  Two servers that read
+ * such a request differently allow request smuggling, so the rules are applied here to the head that libmicrohttpd read.  A body
+ * needs a Content-Length: a chunked body is refused, which RFC 9112 section 6.3 allows. */
 #include "schema/http/http_head.h"
 
 #include <arpa/inet.h>
@@ -16,10 +16,10 @@
 
 #include "schema/json/json_strict.h"
 
-/* Notes why a request is refused, if nothing was noted before.
+/* Notes why a request is refused; only the first reason is kept.
  *
- * Given    close    it leaves in doubt where the request ends
- *          format   printf format and its values: a sentence
+ * Given    close    the end of the request is uncertain
+ *          format   printf format of a sentence, and its values
  */
 void head_refuse(struct head *head, enum api_fault fault, bool close, const char *format, ...)
 {
@@ -31,16 +31,16 @@ void head_refuse(struct head *head, enum api_fault fault, bool close, const char
 	va_start(values, format);
 	vsnprintf(head->detail, sizeof head->detail, format, values);
 	va_end(values);
-	// what a client sent may be no text at all, and a problem is JSON
+	// bytes from a client may be invalid in JSON
 	for (char *c = head->detail; *c; c++)
 		*c = *c < ' ' || *c > '~' ? '?' : *c;
 }
 
-/* Starts with the request's target as it came.
+/* Starts the check with the target of the request.
  *
  * Given    target   path and arguments, not decoded
- * Returns  value    bytes of it to parse: without the arguments when these are too many, for which
- *                   libmicrohttpd has no room
+ * Returns  value    bytes of the target to parse: without the arguments if these are too many for the
+ *                   memory of libmicrohttpd
  * Test     unit_http_head: a_target_is_visible_ascii_and_its_escapes_are_whole; a_target_has_so_many_bytes_and_arguments
  */
 size_t head_target(struct head *head, const char *target)
@@ -71,12 +71,12 @@ size_t head_target(struct head *head, const char *target)
 	return n > HEAD_TARGET_MAX || n_arguments > HEAD_ARGUMENTS_MAX ? n_path : n;
 }
 
-/* Judges the lines behind the target by their bytes.  libmicrohttpd ends each name and each line by NULs in their place,
- * a CR LF by two; so one more was sent by the client and hides what is behind it, or a line was none: folded into the one
- * before, without a name (which ends its head), or ended by LF alone.
+/* Checks the bytes of the headers.  libmicrohttpd writes a NUL at the end of each name and two in place of each CR LF.  Any
+ * other number of NULs means that the client sent a NUL, which hides the bytes after it, or that a line is invalid: folded into
+ * the previous line, without a name (libmicrohttpd then ends the head), or ended by LF only.
  *
  * Given    bytes     (n)   from the end of the version to the end of the empty line
- *          n_lines   headers found in it
+ *          n_lines   number of headers found
  * Test     unit_http_head: a_head_has_no_byte_but_those_of_its_lines
  */
 void head_bytes(struct head *head, const char *bytes, size_t n, int n_lines)
@@ -125,11 +125,11 @@ static bool is_json(const char *type, size_t n)
 	return is(type, end, "application/json");
 }
 
-/* Headers that are read later. */
+/* Headers that are stored. */
 static const struct {
 	const char *name;
-	size_t at; /* its head_text in struct head */
-	bool list; /* lines of one name are a list, as if a comma were between them; else the first counts */
+	size_t at; /* offset of its head_text in struct head */
+	bool list; /* several lines are joined by commas into one list; false: the first line counts */
 } texts[] = {
     {"Authorization", offsetof(struct head, authorization), false},
     {"Idempotency-Key", offsetof(struct head, key), false},
@@ -140,11 +140,11 @@ static const struct {
     {"Sec-Fetch-Site", offsetof(struct head, site), false},
 };
 
-/* Keeps a value, or those of its elements that there is room for: half of one may mean another thing than the whole. */
+/* Stores a value, or as many whole elements of its list as fit: half an element could mean something else. */
 static void keep(struct head_text *text, bool list, const char *value, size_t n_value)
 {
 	size_t n = strlen(text->value), room = sizeof text->value - n;
-	if (text->lines++ > 0 && (!list || room < 2)) // not even for a comma, which would show where to cut
+	if (text->lines++ > 0 && (!list || room < 2)) // no room for a comma, which marks where to truncate
 		return;
 	int wanted = snprintf(text->value + n, room, "%s%.*s", n ? "," : "", (int)n_value, value);
 	if ((size_t)wanted < room)
@@ -153,10 +153,10 @@ static void keep(struct head_text *text, bool list, const char *value, size_t n_
 	*(end ? end : text->value) = '\0';
 }
 
-/* Takes the next header.
+/* Checks and stores the next header.
  *
  * Given    name    (n_name) bytes
- *          value   (n_value) bytes   without white space before it; what is behind it is no part of it
+ *          value   (n_value) bytes   without leading white space; trailing white space is removed here
  * Source   RFC 9110 section 5.5
  * Test     unit_http_head: white_space_behind_a_value_is_no_part_of_it
  */
@@ -173,7 +173,7 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 		snprintf(head->host, sizeof head->host, "%.*s", (int)n_value, value);
 	} else if (is(name, n_name, "Content-Length")) {
 		head->lengths++;
-		// what is no number was refused before; what does not fit is the largest
+		// libmicrohttpd has refused invalid numbers; strtoull returns its largest value for larger numbers
 		unsigned long long length = strtoull(value, NULL, 10);
 		head->has_body |= length > 0;
 		head->length = length;
@@ -191,10 +191,10 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 			keep((void *)((char *)head + texts[i].at), texts[i].list, value, n_value);
 }
 
-/* Takes an argument of the target.
+/* Checks a query argument.
  *
  * Given    operation   row of api_operations
- *          name        "" when there is an ampersand too many
+ *          name        "" between two ampersands: ignored
  * Test     service_list: list_arguments_that_make_no_sense_are_400
  */
 void head_argument(struct head *head, int operation, const char *name, const char *value)
@@ -211,11 +211,11 @@ void head_argument(struct head *head, int operation, const char *name, const cha
 	}
 }
 
-/* Judges the whole head.
+/* Checks the whole head.
  *
  * Given    needs_host   HTTP/1.1 and later
  *          names        comma-separated hosts accepted in addition to localhost and addresses; NULL: none
- * Returns  head         its fault, API_NO_FAULT: none
+ * Returns  head         with its fault, API_NO_FAULT: none
  * Test     unit_http_head: what_leaves_a_request_s_end_in_doubt_is_refused
  */
 void head_end(struct head *head, bool needs_host, const char *names)
@@ -246,8 +246,8 @@ void head_end(struct head *head, bool needs_host, const char *names)
 		head_refuse(head, API_TOO_LARGE, false, "the file of a record may have at most 8 MiB");
 }
 
-/* Judges where a request that changes something comes from: a page of the web names its own origin, and its browser says
- * whether that is this server's.  Programs say neither.
+/* Checks the origin of a request that changes data: for a web page the browser sends Origin and Sec-Fetch-Site, which must name
+ * this server.  Other programs send neither.
  *
  * Source   RFC 6454 section 7; Fetch Metadata Request Headers section 2.3
  * Test     unit_http_head: what_a_page_of_another_origin_sends_is_foreign
@@ -266,8 +266,8 @@ void head_origin(struct head *head)
 		head_refuse(head, API_FOREIGN, false, "pages of another origin must not change anything here");
 }
 
-/* Judges the Idempotency-Key of a request that may have one: it is of UTF-8, as what is stored is text, and a second one
- * would be a key that a proxy did not see.
+/* Checks the Idempotency-Key of a request that may have one: UTF-8, because it is stored as text, and only one, because a proxy
+ * might read a different one.
  *
  * Test     unit_http_head: a_key_is_one_text_of_1_to_200_characters
  */
@@ -289,8 +289,8 @@ void head_key(struct head *head)
 		            HEAD_KEY_MAX);
 }
 
-/* Whether a Host header names this server: an address in digits, localhost or one of the names, with any port.  A page
- * of the web that has its own name point here (DNS rebinding) has none of these.
+/* Whether a Host header names this server: a numeric address, localhost or one of the names, with any port.  This refuses DNS
+ * rebinding: a web page whose own host name resolves to this server.
  *
  * Test     unit_http_head: a_host_is_an_address_localhost_or_a_name_that_was_given
  */
@@ -318,7 +318,7 @@ bool head_has_host(const char *host, const char *names)
 	return false;
 }
 
-/* Whether an If-None-Match has a tag: `*`, or a list of tags, weak ones too (RFC 9110 section 13.1.2).
+/* Whether If-None-Match matches a tag: `*`, or a list of tags, weak ones too (RFC 9110 section 13.1.2).
  *
  * Given    etag   "\"...\"", strong
  * Test     unit_http_head: a_tag_is_found_in_every_form_of_a_list
@@ -346,7 +346,7 @@ bool head_has_etag(const char *list, const char *etag)
 	return false;
 }
 
-/* Bytes up to one of some ends that is not inside quotes, or to the end. */
+/* Number of bytes before the first character of `ends` outside quotes, or before the end. */
 static size_t part(const char *at, const char *ends)
 {
 	bool quoted = false;
@@ -358,9 +358,9 @@ static size_t part(const char *at, const char *ends)
 	return n;
 }
 
-/* Whether an Accept names a media type; weights and other parameters are not looked at, nor ranges with a star.
+/* Whether Accept lists a media type; weights, other parameters and ranges with a star are ignored.
  *
- * Given    accept   "": there is none
+ * Given    accept   "": no such header
  * Test     unit_http_head: an_accept_names_the_types_in_its_list
  */
 bool head_names(const char *accept, const char *type)
@@ -373,8 +373,7 @@ bool head_names(const char *accept, const char *type)
 	return false;
 }
 
-/* The seconds that a Prefer header is ready to wait (RFC 7240): 0 when it has no wait=N, or one that makes no sense; the
- * largest int when they are more.
+/* The seconds that a client is willing to wait, from its Prefer header (RFC 7240): 0 without a valid wait=N; at most INT_MAX.
  *
  * Test     unit_http_head: the_seconds_to_wait_are_found_among_other_preferences
  */

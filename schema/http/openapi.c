@@ -1,5 +1,5 @@
-/* The OpenAPI 3.0 document: paths from the rows of api.c, what is answered from the rows here, a study from those of
- * fields.c (study_schema.c). */
+/* openapi.c - the OpenAPI 3.0 document: paths from the rows of api.c, responses from the rows here, the study document from the
+ * rows of fields.c (study_schema.c). */
 #include <stdio.h>
 #include <string.h>
 
@@ -10,10 +10,10 @@
 #include "schema/study/study_json.h"
 #include "schema/study/study_schema.h"
 
-/* Members of what is answered.  A type is one of JSON, the name of another object, or [NAME], an array of these. */
+/* Members of response objects.  A type is a JSON type, the name of another object, or [NAME]: an array of such values. */
 struct member {
 	const char *object, *name, *type;
-	const char *note; /* " null ": may be null; " absent ": may not be there */
+	const char *note; /* "null": may be null; "absent": may be absent */
 	const char *text;
 };
 
@@ -131,7 +131,7 @@ static void reference(struct writer *w, const char *schema)
 	writer_text(w, "$ref", path);
 }
 
-/* ---- what is answered ---- */
+/* ---- responses ---- */
 
 static void member(struct writer *w, const struct member *of)
 {
@@ -145,7 +145,7 @@ static void member(struct writer *w, const struct member *of)
 		object(w, "items");
 	}
 	if (another && !array) {
-		// beside a $ref nothing else counts
+		// siblings of a $ref are ignored, so a description needs allOf
 		writer_array(w, "allOf", WRITER_LINE);
 		writer_object(w, NULL, WRITER_LINE);
 		reference(w, type);
@@ -251,7 +251,7 @@ static void arguments(struct writer *w, const struct api_operation *operation)
 	writer_end(w);
 }
 
-/* Whether an example is a whole study, and not a design alone. */
+/* Whether an example is a complete study, not only a design. */
 static bool is_study(const char *text)
 {
 	struct problems problems;
@@ -306,7 +306,7 @@ static void header(struct writer *w, const char *name, bool required, const char
 	writer_end(w);
 }
 
-/* Headers of a success: where what was made is, and the tag of what may be asked for again. */
+/* Headers of a successful response: Location of a new study, and ETag if the operation supports If-None-Match. */
 static void success_headers(struct writer *w, const struct api_operation *operation, const char *answer,
                             const char *schema)
 {
@@ -321,7 +321,7 @@ static void success_headers(struct writer *w, const struct api_operation *operat
 	writer_end(w);
 }
 
-/* An answer such as "200=Page" or "304". */
+/* A successful response such as "200=Page" or "304". */
 static void success(struct writer *w, const struct api_operation *operation, char *answer)
 {
 	char types[128], *object_name = strchr(answer, '=');
@@ -342,7 +342,7 @@ static void success(struct writer *w, const struct api_operation *operation, cha
 	writer_end(w);
 }
 
-/* The object that an operation answers with a status of failure, in its own form, if it has one. */
+/* The operation's own response object for an error status, if it has one (UM-Bridge). */
 static void failed_as(struct writer *w, const struct api_operation *operation, const char *status)
 {
 	char answer[12], schema[32] = "";
@@ -419,7 +419,7 @@ static void operations(struct writer *w)
 	writer_end(w);
 }
 
-/* The document that describes the interface of poundd.
+/* Writes the document that describes the interface of poundd.
  *
  * Returns  value     (length)  -       JSON, OpenAPI 3.0; NULL: out of memory
  * Memory   allocates; the caller frees

@@ -1,13 +1,13 @@
-/* json.c - JSON text -> cJSON tree, after the strict check, and back. */
+/* json.c - JSON text -> cJSON tree, after the strict check, and cJSON tree -> JSON text. */
 #include "schema/json/json.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CJSON_NUMBER_MAX = 63 }; // cJSON 1.7 copies a number into 64 bytes and cuts the rest off
+enum { CJSON_NUMBER_MAX = 63 }; // cJSON 1.7 truncates a number to 63 characters
 
-/* Rewrites the numbers that are too long for cJSON as the same double in fewer digits, padded with spaces. */
+/* Shortens numbers that are too long for cJSON to fewer digits of the same double, padded with spaces. */
 static void shorten_numbers(char *text)
 {
 	for (char *s = text; *s;) {
@@ -30,9 +30,9 @@ static void shorten_numbers(char *text)
 
 /* Parses a document.
  *
- * Given    text      (length)  bytes   need not end with a zero
+ * Given    text      (length)  bytes   not necessarily zero-terminated
  * Returns  value     -         -       the tree; NULL: not JSON (fault->line > 0) or no memory (fault->line = 0)
- * Memory   allocates, about 40 bytes per byte of text at worst; for cJSON_Delete
+ * Memory   allocates, at most about 40 bytes per byte of text; free with cJSON_Delete
  *
  * Test     unit_json_pointer: a_number_of_400_characters_keeps_its_value
  */
@@ -54,7 +54,7 @@ cJSON *json_parse(const char *text, size_t length, struct json_fault *fault)
 
 _Static_assert((int)WRITER_DEPTH_MAX >= (int)JSON_DEPTH_MAX, "what was read can be written");
 
-/* What holds no other object or array is on one line. */
+/* Values without nested objects or arrays are written on one line. */
 static enum writer_layout layout_of(const cJSON *value)
 {
 	const cJSON *child;
@@ -80,5 +80,5 @@ void json_write(struct writer *w, const char *name, const cJSON *value, json_rep
 	else if (cJSON_IsBool(value))
 		writer_bool(w, name, cJSON_IsTrue(value));
 	else
-		writer_text(w, name, value->valuestring); // null has none
+		writer_text(w, name, value->valuestring); // null has no valuestring, and is written as null
 }

@@ -1,4 +1,4 @@
-/* json_pointer.c - answers of the server and results, read by JSON Pointer (RFC 6901). */
+/* json_pointer.c - reads values of a JSON document by JSON Pointer (RFC 6901). */
 #include "schema/json/json_pointer.h"
 
 #include <math.h>
@@ -11,14 +11,14 @@
 
 enum { POINTER_SIZE = 512 };
 
-/* The document itself, under its public name. */
+/* The cJSON tree as an opaque type. */
 struct reading {
 	cJSON tree;
 };
 
 /* Parses a document for reading.
  *
- * Given    text      (length)  bytes   need not end with a zero
+ * Given    text      (length)  bytes   not necessarily zero-terminated
  * Returns  value     -         -       NULL: not strict JSON, or out of memory
  * Memory   allocates; reading_close frees
  *
@@ -35,7 +35,7 @@ void reading_close(struct reading *reading)
 	cJSON_Delete((cJSON *)reading);
 }
 
-/* One part of a pointer without its escapes; the place behind it. */
+/* Reads one unescaped reference token of a pointer; returns the position after it. */
 static const char *part(const char *at, char name[POINTER_SIZE])
 {
 	size_t n = 0;

@@ -1,7 +1,7 @@
 /* json_strict.c - a strict check of JSON text: the grammar of RFC 8259 by recursive descent, one function per rule.
  *
- * The parser behind it takes `01`, `2.`, control characters and half surrogates, cuts texts at \u0000 and turns
- * 1e400 into infinity; none of these comes through here.  \u0000 is refused although JSON allows it: a C string
+ * cJSON accepts `01`, `2.`, control characters and lone surrogates, truncates strings at \u0000 and turns
+ * 1e400 into infinity; all of these are refused here.  \u0000 is refused although JSON allows it, because a C string
  * ends there. */
 #include "schema/json/json_strict.h"
 
@@ -17,7 +17,7 @@ struct scan {
 	struct json_fault *fault;
 };
 
-/* Notes what is wrong at the current place and where that is; always false. */
+/* Stores an error with the line and column of the current position; always false. */
 static bool refuse(struct scan *scan, const char *detail)
 {
 	scan->fault->line = 1;
@@ -34,7 +34,7 @@ static bool refuse(struct scan *scan, const char *detail)
 	return false;
 }
 
-/* The byte at the current place, -1 after the last. */
+/* The byte at the current position, -1 after the last. */
 static int peek(const struct scan *scan)
 {
 	return scan->at < scan->length ? (unsigned char)scan->text[scan->at] : -1;
@@ -45,7 +45,7 @@ static bool is_digit(int c)
 	return c >= '0' && c <= '9';
 }
 
-/* What people write at the current place who know other languages than JSON; "": nothing that is known. */
+/* A hint about a construct from other languages at the current position; "": none is recognized. */
 static const char *habit(const struct scan *scan)
 {
 	static const char *const words[] = {"NaN", "nan", "Infinity", "inf"};
@@ -132,7 +132,7 @@ static bool number(struct scan *scan)
 	return true;
 }
 
-/* The code unit of \uXXXX with the current place on the first X, -1 if these are not four hex digits. */
+/* The code unit of \uXXXX with the current position at the first X, -1 if these are not four hex digits. */
 static int code_unit(struct scan *scan)
 {
 	int unit = 0;
@@ -182,7 +182,7 @@ size_t json_strict_character(const char *text, size_t length)
 	size_t n = s[0] < 0x80 ? 1 : s[0] >= 0xC2 && s[0] < 0xE0 ? 2 : (s[0] & 0xF0) == 0xE0 ? 3 : 4;
 	if (n > length || (n == 4 && (s[0] < 0xF0 || s[0] > 0xF4)))
 		return 0;
-	// no overlong forms, no surrogates, nothing past U+10FFFF
+	// no overlong forms, no surrogates, nothing above U+10FFFF
 	unsigned low = s[0] == 0xE0 ? 0xA0 : s[0] == 0xF0 ? 0x90 : 0x80;
 	unsigned high = s[0] == 0xED ? 0x9F : s[0] == 0xF4 ? 0x8F : 0xBF;
 	for (size_t i = 1; i < n; i++, low = 0x80, high = 0xBF)
@@ -233,7 +233,7 @@ static bool member(struct scan *scan, int n)
 	return value(scan);
 }
 
-/* The members or elements between brackets, from the opening one on. */
+/* Members or elements in brackets, with the current position at the opening bracket. */
 static bool list(struct scan *scan, char close)
 {
 	if (scan->depth == JSON_DEPTH_MAX)
@@ -281,9 +281,9 @@ static bool value(struct scan *scan)
 
 /* Whether a text is one JSON value within the limits of json_strict.h and nothing else.
  *
- * Given    text      (length)  bytes   need not end with a zero
+ * Given    text      (length)  bytes   not necessarily zero-terminated
  * Returns  value     -         -       true: strict JSON
- *          fault     -         -       where and why not (only then written)
+ *          fault     -         -       position and error; unchanged if there is none
  *
  * Test     unit_json_strict: every_kind_of_broken_text_is_refused
  */

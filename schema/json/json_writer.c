@@ -1,4 +1,4 @@
-/* json_writer.c - JSON and CSV text, built in one growing buffer. */
+/* json_writer.c - writes JSON and CSV text into one growing buffer. */
 #include "schema/json/json_writer.h"
 
 #include <assert.h>
@@ -18,8 +18,8 @@ void writer_init(struct writer *writer)
 
 /* Appends bytes as they are.
  *
- * Given    bytes     (length)  -       may not lie in the writer's own buffer
- * Memory   grows the buffer by doubling; out of memory drops the bytes and all later ones
+ * Given    bytes     (length)  -       must not be in the writer's own buffer
+ * Memory   grows the buffer by doubling; if memory runs out, these and all later bytes are discarded
  *
  * Test     unit_json_writer: out_of_memory_shows_only_at_the_end
  */
@@ -42,10 +42,10 @@ void writer_raw(struct writer *writer, const char *bytes, size_t length)
 	writer->length += length;
 }
 
-/* Hands over what was written.
+/* Transfers the text to the caller.
  *
- * Returns  value     (length)  -       the bytes and a zero behind them; NULL: out of memory
- * Memory   the caller frees it; the writer is empty again
+ * Returns  value     (length)  -       the text, zero-terminated; NULL: out of memory
+ * Memory   the caller frees the text; the writer is empty again
  *
  * Test     unit_json_writer: a_document_comes_out_as_it_was_put_in
  */
@@ -76,7 +76,7 @@ static void break_line(struct writer *writer)
 	writer_raw(writer, indent, 2 * (size_t)writer->depth);
 }
 
-/* Bytes of the character at the start of a text that need no escape. */
+/* Number of bytes of the character at the start of a text; 0: needs an escape or is not UTF-8. */
 static size_t plain(const char *text, size_t length)
 {
 	if ((unsigned char)*text < 0x20 || *text == '"' || *text == '\\')
@@ -84,7 +84,7 @@ static size_t plain(const char *text, size_t length)
 	return json_strict_character(text, length);
 }
 
-/* A byte that is not UTF-8 becomes the replacement character: what is written is JSON whatever was cut or came in. */
+/* Writes a string.  Bytes that are not UTF-8 become the replacement character, so the output is JSON for any input. */
 static void quote(struct writer *writer, const char *text)
 {
 	const char *end = text + strlen(text);
@@ -108,7 +108,7 @@ static void quote(struct writer *writer, const char *text)
 	put(writer, "\"");
 }
 
-/* Writes what comes before a value: comma, line break, name. */
+/* Writes the text before a value: comma, line break, name. */
 static void lead(struct writer *writer, const char *name)
 {
 	if (writer->depth == 0)
@@ -175,10 +175,10 @@ void writer_text(struct writer *writer, const char *name, const char *text)
 /* The shortest decimal of a number that reads back to the same double.
  *
  * Given    value     -         -       any double
- * Returns  digits    (32)      -       its text; "null" for NaN and the infinities
+ * Returns  digits    (32)      -       its text; "null" for NaN and infinities
  *          value     -         -       the text's length
  *
- * 15 digits are always kept by a double, 17 always keep one; so the first of 15, 16, 17 that reads back is taken.
+ * A double preserves any 15 digits, and 17 digits preserve any double; so the first of 15, 16, 17 that reads back is used.
  *
  * Test     unit_json_writer: a_million_random_numbers_read_back_to_the_same_bits
  */
@@ -207,7 +207,7 @@ void writer_whole(struct writer *writer, const char *name, int64_t value)
 	writer_raw(writer, digits, (size_t)snprintf(digits, sizeof digits, "%lld", (long long)value));
 }
 
-/* A seed: a number where every reader keeps it, else its digits as text.
+/* A seed: a number if every JSON reader represents it exactly, else a string of its digits.
  *
  * Test     unit_json_writer: a_seed_past_2_to_the_53_is_text
  */
@@ -228,7 +228,7 @@ void writer_bool(struct writer *writer, const char *name, bool value)
 	put(writer, value ? "true" : "false");
 }
 
-/* A value that is JSON already, put as it is but for the white space behind it.
+/* A value that is JSON already, copied without its trailing white space.
  *
  * Test     unit_api: every_example_of_the_document_is_what_its_schema_says
  */
@@ -241,8 +241,8 @@ void writer_json(struct writer *writer, const char *name, const char *document)
 	writer_raw(writer, document, n);
 }
 
-/* A text cell of CSV (RFC 4180).  A spreadsheet takes a cell that starts with = + - @, a tab or a carriage return
- * for a formula; an apostrophe in front makes it text.
+/* A text cell of CSV (RFC 4180).  Spreadsheets treat a cell that starts with = + - @, a tab or a carriage return
+ * as a formula; a leading apostrophe makes it text.
  *
  * Test     unit_json_writer: a_cell_is_never_a_formula
  */

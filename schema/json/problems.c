@@ -1,4 +1,4 @@
-/* problems.c - what is wrong with a request, all of it at once, and the body that says so (RFC 9457). */
+/* problems.c - the list of all problems of a request, and the response body with it (RFC 9457). */
 #include "schema/json/problems.h"
 
 #include <stdarg.h>
@@ -14,7 +14,7 @@ void problems_init(struct problems *problems)
 	problems->n = problems->n_more = 0;
 }
 
-/* Cuts a text that did not fit before the character that broke, and says so. */
+/* Ends a truncated text with "...", not inside a UTF-8 character. */
 static void mend(char *text, size_t size, int wanted)
 {
 	if (wanted < (int)size)
@@ -42,10 +42,10 @@ static void add(struct problems *problems, const char *pointer, double requested
 	     vsnprintf(problem->detail, sizeof problem->detail, format, arguments));
 }
 
-/* Adds one problem of an invalid study; past PROBLEMS_MAX only counts it.
+/* Adds one problem of an invalid study; above PROBLEMS_MAX problems are only counted.
  *
- * Given    pointer   -         -       JSON Pointer, cut when too long for its place
- *          format    -         -       of the sentence, printf
+ * Given    pointer   -         -       JSON Pointer, truncated if too long
+ *          format    -         -       printf format of the sentence
  *
  * Test     unit_problems: a_full_list_counts_what_it_cannot_hold
  */
@@ -57,9 +57,9 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 	va_end(arguments);
 }
 
-/* Adds a problem whose sentence says that there is more of something than there may be.
+/* Adds the problem that a limit is exceeded.
  *
- * Given    requested, limit   in the unit that the sentence has;  limit > 0
+ * Given    requested, limit   in the unit of the sentence;  limit > 0
  *
  * Test     unit_study_check: what_is_too_large_is_reported_with_its_limit
  */
@@ -72,7 +72,7 @@ void problems_exceed(struct problems *problems, const char *pointer, double requ
 	va_end(arguments);
 }
 
-/* Whether a member or something in it was found wrong, so that checks that depend on it can be left out.
+/* Whether a member or a value inside it has a problem, so that checks that depend on it can be skipped.
  *
  * Test     unit_problems: a_problem_is_at_its_pointer_and_all_above_it
  */
@@ -87,7 +87,7 @@ bool problems_at(const struct problems *problems, const char *pointer)
 	return problems->n_more > 0;
 }
 
-/* Whether a member, or one that it is in, was found to be none that can be read; what is wrong inside it does not count.
+/* Whether a member, or a value that contains it, has a problem as a whole; problems of values inside it do not count.
  *
  * Test     unit_problems: a_problem_is_over_all_that_is_in_it
  */
@@ -102,10 +102,10 @@ bool problems_over(const struct problems *problems, const char *pointer)
 	return problems->n_more > 0;
 }
 
-/* The body of an error answer.
+/* The body of an error response.
  *
- * Given    head      -         -       status, title and sentence
- *          problems  -         -       its list becomes `errors`, a place `line` and `column`; NULL: neither
+ * Given    head      -         -       status, type, title and detail
+ *          problems  -         -       the list becomes `errors`, a position `line` and `column`; NULL: neither
  * Returns  value     (length)  -       JSON; NULL: out of memory
  * Memory   allocates; the caller frees
  *

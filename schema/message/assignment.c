@@ -1,4 +1,4 @@
-/* Blocks are taken by number; those given back first. */
+/* assignment.c - assigns free blocks in ascending order of their numbers, so blocks that were given back come first. */
 #include "schema/message/assignment.h"
 
 #include <assert.h>
@@ -6,7 +6,7 @@
 
 enum { FREE, TAKEN, DONE };
 
-/* a block is taken again when it has been out for longer than both */
+/* a block is assigned a second time if it has been taken for longer than both */
 static const double LATE_MEANS = 10; /* mean times of a block */
 static const double LATE_LEAST = 5;  /* [s] */
 
@@ -30,7 +30,7 @@ static bool is_late(const struct assignment *a, const struct assignment_block *b
 
 /* Finds the next block for a taker.
  *
- * Given    n_blocks   that there are to run now
+ * Given    n_blocks   number of blocks that may run now
  *          taker      ASSIGNMENT_HERE, or the number of a group
  *          now        s   monotonic
  * Test     unit_assignment: a_block_that_is_out_for_long_runs_elsewhere_and_counts_once
@@ -57,7 +57,7 @@ void assignment_take(struct assignment *a, int block, int taker, double now)
 	b->since = now;
 }
 
-/* Gives a block back that was not run. */
+/* Gives back a block that was not run. */
 void assignment_back(struct assignment *a, int block, int taker)
 {
 	struct assignment_block *b = &a->blocks[block];

@@ -1,14 +1,14 @@
-/* A group's life:
+/* coordinator.c - states of a worker group:
  *
- *   rest -- blocks are wanted --> launch --> wait for the connection --> serve --+
+ *   idle -- blocks are wanted --> launch --> wait for the connection --> serve --+
  *    ^                              ^  failed: 1, 2, 4 ... 60 s later            |
  *    +------------------------------+--------------------- idle for 60 s, or lost
  *
- * No block is taken before the group has connected, so a launcher that waits in a queue delays nothing.  While it serves,
- * a group has two blocks a thread: one that runs, one on its way.
+ * No block is taken before the group has connected, so a launcher in a batch queue delays nothing.  While it is served,
+ * a group has two blocks per thread: one that runs, one that waits.
  *
- * Groups that others start have no launcher.  One thread waits for a connection, starts the next that waits, and serves what
- * it has let in until that goes. */
+ * External workers have no launcher.  One thread waits for a connection, starts the next waiting thread, and serves the
+ * connection until it ends. */
 #include "schema/message/coordinator.h"
 
 #include <assert.h>
@@ -29,28 +29,28 @@
 #include "schema/message/listen.h"
 
 enum {
-	AHEAD = 2,        /* blocks a thread that a group has */
-	STUDIES_MAX = 16, /* that a group has at a time */
-	LOOK_MS = 200,    /* between two looks at what is not signaled: late blocks, an end of the launcher */
-	IDLE_MAX = 60,    /* [s] without a block, then the group ends */
-	PAUSE_MAX = 60,   /* [s] before a launcher is tried again */
-	REFUSED_MS = 500, /* after a connection that was not let in, so that those cannot fill a log */
+	AHEAD = 2,        /* blocks per thread of a group */
+	STUDIES_MAX = 16, /* of a group at the same time */
+	LOOK_MS = 200,    /* interval of polling for late blocks and the end of the launcher */
+	IDLE_MAX = 60,    /* [s] without a block before the group ends */
+	PAUSE_MAX = 60,   /* [s] longest pause before a launcher is started again */
+	REFUSED_MS = 500, /* pause after a refused connection, so that refusals cannot flood the log */
 };
 
-/* What a group knows of a study. */
+/* State of a study at a group. */
 enum standing { UNKNOWN, SENT, AGREED, REFUSED, DROPPED };
 struct known {
 	enum standing standing;
 	uint64_t id;
-	int n_out;                           /* blocks that the group has and has not answered */
-	uint8_t digest[MESSAGE_DIGEST_SIZE]; /* of the design here */
+	int n_out;                           /* blocks of the group without an answer */
+	uint8_t digest[MESSAGE_DIGEST_SIZE]; /* digest of the coordinator's design */
 };
 
 struct out {
 	struct coordinator_block block;
-	uint64_t id; /* of its study, also when that is gone */
-	bool taken;  /* it is still ours to give back */
-	bool waits;  /* not sent before the group agrees on the design */
+	uint64_t id; /* of its study, valid after the study has ended */
+	bool taken;  /* not yet done or given back */
+	bool waits;  /* to be sent after the group has agreed on the design */
 };
 
 struct group {
@@ -59,15 +59,15 @@ struct group {
 	pthread_t thread;
 	int wakes; /* eventfd */
 	struct launcher launcher;
-	pthread_mutex_t lock; /* of the socket, which another thread may shut down */
+	pthread_mutex_t lock; /* for the socket, which another thread may shut down */
 	int socket, n_threads;
 	struct known known[STUDIES_MAX];
 	struct out *out; /* (n_out_max) */
 	int n_out, n_out_max;
 	uint64_t refused[STUDIES_MAX];
 	int n_refused;
-	bool worked;                 /* a block was run since the launch */
-	char peer[LISTEN_PEER_SIZE]; /* address that it connected from */
+	bool worked;                 /* has run a block since the launch */
+	char peer[LISTEN_PEER_SIZE]; /* address of its connection */
 };
 
 struct coordinator {
@@ -76,9 +76,9 @@ struct coordinator {
 	atomic_bool stopping;
 	atomic_int n_connected;
 	atomic_long n_blocks;
-	pthread_mutex_t lock;  /* of the start of threads */
-	int n_waiting;         /* groups that wait for others to connect */
-	int n_launched, n_max; /* groups that have a launcher, groups at most */
+	pthread_mutex_t lock;  /* for the start of threads */
+	int n_waiting;         /* threads that wait for external workers */
+	int n_launched, n_max; /* groups with a launcher, most groups */
 	atomic_int n;          /* groups whose threads have started */
 	struct group groups[]; /* (n_max) */
 };
@@ -106,7 +106,7 @@ __attribute__((format(printf, 2, 3))) static void say(const struct group *g, con
 	g->of->source.log(line);
 }
 
-/* Waits for a signal, or for bytes of the socket (-1: none); true: there are bytes. */
+/* Waits for a wake-up, or for data at the socket (-1: none); true: data. */
 static bool pause_for(struct group *g, int socket, int ms)
 {
 	struct pollfd of[2] = {{.fd = g->wakes, .events = POLLIN}, {.fd = socket, .events = POLLIN}};
@@ -142,7 +142,7 @@ static void refuse(struct group *g, struct known *k, const char *why)
 {
 	say(g, "refused for this study: %s", why);
 	k->standing = REFUSED;
-	assert(g->n_refused < STUDIES_MAX); // each has its place among the studies that the group knows
+	assert(g->n_refused < STUDIES_MAX); // each is one of the STUDIES_MAX known studies
 	g->refused[g->n_refused++] = k->id;
 	for (int i = g->n_out - 1; i >= 0; i--)
 		if (g->out[i].id == k->id && g->out[i].waits) {
@@ -152,7 +152,7 @@ static void refuse(struct group *g, struct known *k, const char *why)
 		}
 }
 
-/* A study that was refused has ended. */
+/* Removes an ended study from the refused ones. */
 static void refused_forget(struct group *g, uint64_t id)
 {
 	int kept = 0;
@@ -162,7 +162,7 @@ static void refused_forget(struct group *g, uint64_t id)
 	g->n_refused = kept;
 }
 
-/* Lets go of studies that have ended here; false: the connection failed. */
+/* Drops studies that have ended; false: the connection failed. */
 static bool drop_ended(struct group *g)
 {
 	for (int s = 0; s < STUDIES_MAX; s++) {
@@ -183,7 +183,7 @@ static bool drop_ended(struct group *g)
 			refused_forget(g, k->id);
 			const bool unanswered = k->standing == SENT;
 			k->standing = DROPPED;
-			k->n_out += unanswered; // the design
+			k->n_out += unanswered; // the answer about the design
 			if (!message_send(g->socket, &drop, NULL))
 				return false;
 		}
@@ -193,7 +193,7 @@ static bool drop_ended(struct group *g)
 	return true;
 }
 
-/* Sends a study, before its first block; false: the connection failed, or there is no memory. */
+/* Sends a study, before its first block; NULL: the connection failed, or out of memory. */
 static struct known *introduce(struct group *g, const struct coordinator_study *study)
 {
 	struct known *k = g->known;
@@ -215,7 +215,7 @@ static bool send_block(struct group *g, struct out *out)
 	return message_send(g->socket, &head, NULL);
 }
 
-/* Whether the group may get one more study: many short ones may have ended since it answered last. */
+/* Whether the group may get one more study: the table may be full of short studies that have ended since its last answer. */
 static bool has_place(const struct group *g)
 {
 	int n = 0;
@@ -245,7 +245,7 @@ static bool fill(struct group *g)
 	return true;
 }
 
-/* NULL, or what is wrong with the answer. */
+/* Handles a DESIGN; NULL, or an error message. */
 static const char *take_design(struct group *g, const struct message *m, const char *body)
 {
 	struct known *k = known_of(g, m->study);
@@ -282,7 +282,7 @@ static const char *take_values(struct group *g, const struct message *m, const c
 			return "a block of another size";
 		if (m->status == POUND_STOPPED)
 			return "a block that was stopped";
-		// no memory there is not no memory here
+		// out of memory in the worker does not mean out of memory here
 		if (m->status == POUND_NOMEM)
 			return "out of memory";
 		out->taken = false;
@@ -295,7 +295,7 @@ static const char *take_values(struct group *g, const struct message *m, const c
 	return NULL;
 }
 
-/* Takes one message; false: the connection is over. */
+/* Receives and handles one message; false: the connection is to be closed. */
 static bool answer(struct group *g)
 {
 	struct message m;
@@ -314,7 +314,7 @@ static bool answer(struct group *g)
 	return !fault;
 }
 
-/* Says here, and to the worker, why it is not wanted. */
+/* Logs why a worker is refused, and sends it the reason. */
 __attribute__((format(printf, 2, 3))) static void turn_away(struct group *g, const char *format, ...)
 {
 	char why[MESSAGE_TEXT_MAX];
@@ -327,7 +327,7 @@ __attribute__((format(printf, 2, 3))) static void turn_away(struct group *g, con
 	say(g, "refused: %s", why);
 }
 
-/* The first message; false: another version, or not that. */
+/* Receives the first message; false: another version, or no valid greeting. */
 static bool greet(struct group *g)
 {
 	struct message m;
@@ -359,7 +359,7 @@ static void set_socket(struct group *g, int socket)
 	pthread_mutex_unlock(&g->lock);
 }
 
-/* Serves a group that has connected, until it ends or is idle for long. */
+/* Serves a connected group until its connection ends or it is idle for too long. */
 static void serve(struct group *g)
 {
 	double busy = now_s(), looked = 0;
@@ -400,13 +400,13 @@ static void serve(struct group *g)
 	memset(g->known, 0, sizeof g->known);
 }
 
-/* Takes a connection of what the launcher has started; false: there is none. */
+/* Accepts a connection of the launched workers; false: none, or a wrong token. */
 static bool launched_accept(struct group *g)
 {
 	const int connection = listen_accept(g->launcher.listens, g->peer);
 	if (connection < 0)
 		return false;
-	set_socket(g, connection); // so that the end does not wait for a token
+	set_socket(g, connection); // so that coordinator_stop can shut it down while it waits for the token
 	if (!g->of->stopping && listen_entry(connection, g->launcher.token) == LISTEN_TOKEN)
 		return true;
 	set_socket(g, -1);
@@ -458,7 +458,7 @@ static void *launched_run(void *of)
 
 static bool group_start(struct coordinator *c);
 
-/* Waits for workers that others start, one after the other. */
+/* Thread that waits for external workers and serves one after the other. */
 static void *waiting_run(void *of)
 {
 	struct group *g = of;
@@ -467,7 +467,7 @@ static void *waiting_run(void *of)
 		pause_for(g, c->launch.socket, -1);
 		const int connection = c->stopping ? -1 : listen_accept(c->launch.socket, g->peer);
 		if (connection < 0) {
-			// another group was faster, or there are no descriptors
+			// another thread accepted it, or there are no descriptors
 			if (!c->stopping && errno != EAGAIN)
 				pause_for(g, -1, LOOK_MS);
 			continue;
@@ -480,7 +480,7 @@ static void *waiting_run(void *of)
 		    next && !c->stopping ? listen_entry(connection, c->launch.token) : LISTEN_NO_TOKEN;
 		if (entry == LISTEN_TOKEN)
 			serve(g);
-		else if (!next) // the worker comes again
+		else if (!next) // the worker will reconnect
 			say(g, "closed: no thread or descriptor to wait for further workers");
 		else if (entry == LISTEN_OTHER_TOKEN)
 			turn_away(g, "the token from %s is not the one of --worker-token-file", g->peer);
@@ -494,7 +494,7 @@ static void *waiting_run(void *of)
 	return NULL;
 }
 
-/* Starts the thread of the next group, under the lock; false: no descriptor, no thread, or all end. */
+/* Starts the thread of the next group, with the lock held; true also while stopping; false: no descriptor or thread. */
 static bool group_start(struct coordinator *c)
 {
 	struct group *g = &c->groups[c->n];
@@ -511,7 +511,7 @@ static bool group_start(struct coordinator *c)
 	return true;
 }
 
-/* Starts the threads of the groups; launchers start when blocks are wanted.
+/* Starts the threads of the groups; launchers start when there are blocks.
  *
  * Test     client_worker: every_example_gives_the_same_bytes_with_any_number_of_groups,
  *          client_listen: workers_that_others_start_join_and_leave_at_any_time
@@ -544,7 +544,7 @@ void coordinator_wake(struct coordinator *c)
 	const uint64_t one = 1;
 	for (int i = 0; c && i < c->n; i++)
 		if (write(c->groups[i].wakes, &one, sizeof one) < 0)
-			continue; // it is awake
+			continue; // already woken
 }
 
 int coordinator_groups(const struct coordinator *c)
@@ -562,13 +562,13 @@ void coordinator_stop(struct coordinator *c)
 	if (!c)
 		return;
 	pthread_mutex_lock(&c->lock);
-	c->stopping = true; // no more threads start
+	c->stopping = true; // no further threads start
 	pthread_mutex_unlock(&c->lock);
 	coordinator_wake(c);
 	for (int i = 0; i < c->n; i++) {
 		struct group *g = &c->groups[i];
 		pthread_mutex_lock(&g->lock);
-		// a thread may wait in the middle of a message for a worker that does not answer
+		// a thread may be blocked in the middle of a message of a worker that does not answer
 		if (g->socket >= 0)
 			shutdown(g->socket, SHUT_RDWR);
 		pthread_mutex_unlock(&g->lock);

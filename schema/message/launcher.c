@@ -1,5 +1,5 @@
-/* The command gets a process group of its own, so that all it starts on this machine can be ended, and POUND_WORKER, which
- * says where to connect and with what token: host:port:token. */
+/* launcher.c - starts the command of a worker group in its own process group, so that all its processes on this machine can be
+ * ended, with POUND_WORKER=host:port:token in the environment: where to connect, and the token to send. */
 #include "schema/message/launcher.h"
 
 #include <errno.h>
@@ -17,7 +17,7 @@
 
 enum {
 	END_WAIT = 3,     /* [s] from the end of the connection to SIGTERM, and from there to SIGKILL */
-	PAUSE_US = 10000, /* between two looks whether it has ended */
+	PAUSE_US = 10000, /* between two checks whether it has ended */
 };
 
 extern char **environ;
@@ -68,7 +68,7 @@ int launcher_ranks(void)
 	return most;
 }
 
-/* The environment with one more entry, or one in the place of another. */
+/* A copy of the environment with an entry added or replaced. */
 static char **environment_with(char *entry)
 {
 	size_t n = 0, name = strcspn(entry, "=") + 1;
@@ -83,7 +83,7 @@ static char **environment_with(char *entry)
 	return all;
 }
 
-/* In the new process: all that was set for this program is as it was. */
+/* In the child process: resets signal handlers and mask and closes files, then runs the command. */
 static void become(const char *command, char **environment)
 {
 	sigset_t none;
@@ -95,7 +95,7 @@ static void become(const char *command, char **environment)
 	sigprocmask(SIG_SETMASK, &none, NULL);
 	int nothing = open("/dev/null", O_RDONLY);
 	dup2(nothing, STDIN_FILENO);
-	// the result goes to stdout
+	// stdout of this program is for results
 	dup2(STDERR_FILENO, STDOUT_FILENO);
 	close_range(STDERR_FILENO + 1, ~0U, 0);
 	execle("/bin/sh", "sh", "-c", command, (char *)NULL, environment);
@@ -116,7 +116,7 @@ const char *launcher_start(struct launcher *l, const struct launch *launch)
 	char entry[512];
 	const char *host = launch->host ? launch->host : "127.0.0.1";
 	*l = (struct launcher){.listens = listens_at(launch->host ? "::" : "127.0.0.1")};
-	if (l->listens < 0 && launch->host) // a machine without IPv6
+	if (l->listens < 0 && launch->host) // no IPv6 on this machine
 		l->listens = listens_at("0.0.0.0");
 	if (l->listens < 0)
 		return "no free port to listen on";
@@ -164,14 +164,14 @@ void launcher_stop(struct launcher *l, bool connected)
 	for (int s = !connected; s < 3 && !launcher_ended(l); s++) {
 		if (signals[s])
 			kill(-l->pid, signals[s]);
-		// one that is stopped takes SIGTERM when it goes on
+		// a stopped process handles SIGTERM only after SIGCONT
 		if (signals[s] == SIGTERM)
 			kill(-l->pid, SIGCONT);
 		for (int i = 0; i < 1000000 / PAUSE_US * END_WAIT && !launcher_ended(l); i++)
 			usleep(PAUSE_US);
 	}
 	if (l->pid) {
-		// processes that the command left behind
+		// processes left by the command
 		kill(-l->pid, SIGKILL);
 		waitpid(l->pid, NULL, 0);
 	}

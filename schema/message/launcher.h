@@ -1,4 +1,4 @@
-/* launcher.h - what worker groups come from: a command that starts them, or a port to which others start them. */
+/* launcher.h - how worker groups start: by a command (launcher), or by other means, connecting to a port. */
 #ifndef LAUNCHER_H
 #define LAUNCHER_H
 
@@ -7,37 +7,36 @@
 
 #include "schema/message/message.h"
 
-/* Where worker groups come from. */
+/* Options of worker groups. */
 struct launch {
 	const char *command; /* run by sh -c, POUND_WORKER in its environment; NULL: none */
-	const char
-	    *host;      /* by which workers reach this machine: listen on all addresses; NULL: on loopback only */
-	int n;          /* groups: the command runs once for each; 0: once */
-	const char *at; /* ADDRESS:PORT to which workers that others start connect; NULL: there is none */
-	const char *token_file;             /* of the token that those send */
-	int socket;                         /* that listens there, ... */
-	char token[MESSAGE_TOKEN_SIZE + 1]; /* ... and its token, from launch_listen on */
+	const char *host;    /* name of this machine for workers, listens on all addresses; NULL: loopback only */
+	int n;               /* number of groups, the command runs once for each; 0: one */
+	const char *at;      /* ADDRESS:PORT to which external workers connect; NULL: none */
+	const char *token_file;             /* file of the token that external workers send */
+	int socket;                         /* listens at that port, ... */
+	char token[MESSAGE_TOKEN_SIZE + 1]; /* ... and the token; set by launch_listen */
 };
 
-/* NULL, or which options do not go together. */
+/* NULL, or a sentence about invalid options. */
 const char *launch_fault(const struct launch *launch);
-/* Listens for workers that others start, if it is to; false: it cannot.  The text, when there is one, says so or says where. */
+/* Listens for external workers, if requested; false: failed.  The text, if not empty, is the error or the address. */
 bool launch_listen(struct launch *launch, char *text, size_t size);
 
 struct launcher {
-	pid_t pid;   /* of its process group, 0: none */
-	int status;  /* exit status of one that has ended, 128 + signal of one that a signal ended */
-	int listens; /* the socket that waits for the connection, -1: none */
+	pid_t pid;   /* also of the process group, 0: none */
+	int status;  /* after its end: exit status, or 128 + the signal that ended it */
+	int listens; /* socket that listens for the connection, -1: none */
 	char token[MESSAGE_TOKEN_SIZE + 1];
 };
 
 int launcher_ranks(
-    void); /* that this process is one of, as Open MPI, MPICH or Slurm started it; 1: it is alone */
-/* NULL, or what failed */
+    void); /* number of ranks that Open MPI, MPICH or Slurm started with this process; 1: single process */
+/* NULL, or an error message */
 const char *launcher_start(struct launcher *launcher, const struct launch *launch);
 bool launcher_ended(struct launcher *launcher);
-void launcher_close(struct launcher *launcher); /* takes no connection any more */
-/* Ends all of its processes on this machine.  Workers whose connection was closed get END_WAIT to exit first, a command
+void launcher_close(struct launcher *launcher); /* accepts no further connections */
+/* Ends all processes of the launcher on this machine.  Workers whose connection was closed have END_WAIT to exit first; a command
  * that never connected gets SIGTERM at once. */
 void launcher_stop(struct launcher *launcher, bool connected);
 

@@ -1,4 +1,4 @@
-/* Addresses, sockets that listen, and tokens. */
+/* listen.c - addresses, listening sockets and tokens. */
 #include "schema/message/listen.h"
 
 #include <ctype.h>
@@ -17,7 +17,7 @@
 
 enum {
 	BACKLOG = 1024,
-	TOKEN_WAIT = 2, /* [s] for a connection to say its token */
+	TOKEN_WAIT = 2, /* [s] within which a connection must send its token */
 };
 
 bool listen_address(const char *text, int port, union listen_address *address)
@@ -29,10 +29,10 @@ bool listen_address(const char *text, int port, union listen_address *address)
 	return inet_pton(AF_INET, text, &address->ip4.sin_addr) == 1;
 }
 
-/* Reads an address in digits and a port.
+/* Reads a numeric address and a port.
  *
  * Given    text   such as 10.0.0.1:8438, [::]:8438
- * Returns  value  false: it is something else
+ * Returns  value  false: anything else
  * Test     unit_listen: an_address_and_its_port_are_read_and_nothing_else_is
  */
 bool listen_address_and_port(const char *text, union listen_address *address)
@@ -55,8 +55,8 @@ bool listen_is_loopback(const union listen_address *address)
 	                                          : ntohl(address->ip4.sin_addr.s_addr) >> 24 == 127;
 }
 
-/* A socket that listens at an address, -1: none, and errno says why; made here, for libmicrohttpd would log another line
- * about it, without the port. */
+/* A socket that listens at an address, -1: failed, see errno.  Opened here and not by libmicrohttpd, which would log a failure
+ * itself, without the port. */
 int listen_open(const union listen_address *address, enum listen_families families)
 {
 	const int on = 1, only = families == LISTEN_ONE_FAMILY;
@@ -95,7 +95,7 @@ int listen_accept(int socket, char peer[LISTEN_PEER_SIZE])
 	return connection;
 }
 
-/* All of a token, within TOKEN_WAIT. */
+/* Receives a whole token within TOKEN_WAIT. */
 static bool token_receive(int connection, char token[MESSAGE_TOKEN_SIZE])
 {
 	struct timespec now, until;
@@ -115,7 +115,7 @@ static bool token_receive(int connection, char token[MESSAGE_TOKEN_SIZE])
 	return true;
 }
 
-/* Reads and compares the token, in a time that does not depend on how near it is.
+/* Reads the token and compares it in constant time.
  *
  * Test     unit_listen: only_the_whole_token_lets_a_connection_in, a_token_in_drops_comes_too_late
  */
@@ -132,15 +132,15 @@ enum listen_entry listen_entry(int connection, const char token[MESSAGE_TOKEN_SI
 
 /* Reads the token of a file.
  *
- * Given    file    of mode 0600 or less; 64 hexadecimal digits
- * Returns  value   NULL, or what is wrong
+ * Given    file    mode 0600 or stricter; contains 64 hexadecimal digits
+ * Returns  value   NULL, or an error message
  * Test     unit_listen: a_token_file_that_cannot_be_used_is_refused_with_the_reason
  */
 const char *listen_token(const char *file, char token[MESSAGE_TOKEN_SIZE + 1])
 {
 	char line[MESSAGE_TOKEN_SIZE + 3] = ""; // and \r\n
 	struct stat about;
-	// a pipe that nobody writes to is no reason to wait
+	// O_NONBLOCK: opening a pipe without a writer must not block
 	const int in = open(file, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 	if (in < 0)
 		return strerror(errno);

@@ -1,4 +1,4 @@
-/* listen.h - where a program listens, and the token by which a connection of a worker is let in. */
+/* listen.h - listening sockets, and the token that authenticates a worker's connection. */
 #ifndef LISTEN_H
 #define LISTEN_H
 
@@ -13,26 +13,26 @@ union listen_address {
 	struct sockaddr_in6 ip6;
 };
 
-/* Whether the address :: takes connections by IPv4, too. */
+/* Whether a socket at :: accepts IPv4 connections, too. */
 enum listen_families { LISTEN_ONE_FAMILY, LISTEN_BOTH_FAMILIES };
 
-bool listen_address(const char *text, int port, union listen_address *address); /* false: not in digits */
+bool listen_address(const char *text, int port, union listen_address *address); /* false: not numeric */
 bool listen_address_and_port(const char *text,
                              union listen_address *address); /* ADDRESS:PORT, [ADDRESS]:PORT */
 bool listen_is_loopback(const union listen_address *address);
-/* a socket; -1: errno says why */
+/* a socket; -1: failed, see errno */
 int listen_open(const union listen_address *address, enum listen_families families);
-int listen_port(int socket); /* that it listens on */
+int listen_port(int socket); /* port of the socket */
 
 enum { LISTEN_PEER_SIZE = INET6_ADDRSTRLEN };
 
-/* A connection, not yet let in, and the address that it is from; -1: there is none now. */
+/* A connection, not yet authenticated, and the address of its peer; -1: none now. */
 int listen_accept(int socket, char peer[LISTEN_PEER_SIZE]);
-/* What a connection starts with. */
+/* First bytes of a connection. */
 enum listen_entry { LISTEN_TOKEN, LISTEN_OTHER_TOKEN, LISTEN_NO_TOKEN };
-/* It has 2 s for all of its token. */
+/* Reads and compares the token; the whole token must arrive within 2 s. */
 enum listen_entry listen_entry(int connection, const char token[MESSAGE_TOKEN_SIZE]);
-/* The token of a file; NULL, or what is wrong with the file. */
+/* Reads the token of a file; NULL, or an error message. */
 const char *listen_token(const char *file, char token[MESSAGE_TOKEN_SIZE + 1]);
 
 #endif

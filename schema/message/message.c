@@ -1,4 +1,4 @@
-/* What a head may hold: a row for each type; what a type does not use is 0. */
+/* message.c - sends, receives and checks messages; a row for each type has the valid values of a head, unused fields are 0. */
 #include "schema/message/message.h"
 
 #include <errno.h>
@@ -17,9 +17,9 @@
 static const struct row {
 	enum message_sender sender;
 	int32_t block_min, block_max;
-	uint32_t n_min, n_max; /* when its status is POUND_OK; else it has no body */
-	uint32_t unit;         /* of n [bytes] */
-	bool study, status, cpu_s; /* whether it uses them */
+	uint32_t n_min, n_max; /* if the status is POUND_OK; else there is no body */
+	uint32_t unit;         /* unit of n [bytes] */
+	bool study, status, cpu_s; /* fields that it uses */
 } kinds[] = {
 	[MESSAGE_READY]  = {MESSAGE_OF_WORKER,      1, MESSAGE_THREADS_MAX, 1, MESSAGE_VERSION_MAX, 1, false, false, false},
 	[MESSAGE_STUDY]  = {MESSAGE_OF_COORDINATOR, 0, 0, 1, MESSAGE_DOCUMENT_MAX, 1, true, false, false},
@@ -159,7 +159,7 @@ bool message_design(const struct pound_study *study, struct pound_run *run,
 		sha256_update(&hash, sizeof size, (const uint8_t *)&size);
 		all[block] = true;
 	}
-	// every value of a design is in one of its first two samples; those of a design that grows are all drawn at the start
+	// the first two samples of a row (A, B) contain all values of a design; a growing design draws all its rows at the start
 	const int rows = all && pound_study_sampled(study) ? pound_run_rows_done(run, all) : 0;
 	for (int row = 0; x && row < rows; row++)
 		for (int sample = 0; sample < 2; sample++) {

@@ -1,7 +1,7 @@
 /* record.c - the table of formats.
  *
- * A file is of the first format that recognizes its first lines.  Adding one: its two functions, in a file of their own, and
- * its row. */
+ * A file has the first format that recognizes its first lines.  A new format needs two functions, in their own file, and
+ * a row. */
 #include "schema/record/record.h"
 
 #include <stdlib.h>
@@ -39,7 +39,7 @@ const char *record_format_text(int row)
 	return formats[row].text;
 }
 
-/* The row of the format of a text; `columns` takes what no other does. */
+/* The row of the format of a text; `columns` if no other format recognizes it. */
 static int format_of(const struct record_text *start)
 {
 	int row = 0;
@@ -59,8 +59,8 @@ bool record_recognized(const char *text, size_t length)
 /* Reads a file of a recorded acceleration.
  *
  * Given    text    (length)   any bytes
- *          choice             what the file may not say itself
- * Returns  value              false: problems says why
+ *          choice             information that may be missing in the file
+ * Returns  value              false: failed, see problems
  *          record   m/s2, s   to be freed
  * Memory   allocates the samples
  *

@@ -1,7 +1,7 @@
-/* record_columns.c - times and accelerations in two columns, or accelerations alone with a step that the reader knows.
+/* record_columns.c - times and accelerations in two columns, or only accelerations with a step given by the user.
  *
- * Lines in front of the first that begins with a number are a header, as are lines that begin with # or %.  A unit in
- * brackets, behind `in' or `_' in the header is that of the accelerations: `time_s,acceleration_g'. */
+ * Lines before the first line that begins with a number are a header, as are lines that begin with #, % or !.  A unit in the header,
+ * in brackets or after `in', `of' or `_', is the unit of the accelerations: `time_s,acceleration_g'. */
 #include "schema/record/record_text.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ static int first_number(const struct record_text *text, double *value)
 
 /* ---- units ---- */
 
-/* Whether a unit may begin at a place: behind a bracket, `_', "in " or "of ". */
+/* Whether a unit may begin at c: after a bracket, `_', "in " or "of ". */
 static bool unit_place(const char *start, const char *c)
 {
 	if (c == start)
@@ -43,7 +43,7 @@ static bool unit_place(const char *start, const char *c)
 	       (c - start >= 3 && (strncmp(c - 3, "in ", 3) == 0 || strncmp(c - 3, "of ", 3) == 0));
 }
 
-/* The unit of accelerations that a header line names, if it does. */
+/* Sets the unit if a header line names a unit of acceleration. */
 static void header_unit(const struct record_text *text, const char **unit)
 {
 	char line[256];
@@ -55,7 +55,7 @@ static void header_unit(const struct record_text *text, const char **unit)
 	}
 }
 
-/* The factor of the unit that the header or the reader names; 0: reported. */
+/* The factor of the unit from the header or from the user; 0: a problem was added. */
 static double factor_of(struct record_text *text, const char *header, struct record *record)
 {
 	const char *chosen = text->choice->unit;
@@ -73,8 +73,8 @@ static double factor_of(struct record_text *text, const char *header, struct rec
 
 /* ---- numbers ---- */
 
-/* The place of a decimal comma in the current line: a comma between digits where blanks or semicolons part the numbers;
- * from 1, 0: there is none. */
+/* Column, from 1, of a decimal comma in the current line: a comma between digits if blanks or semicolons separate the numbers;
+ * 0: none. */
 static int decimal_comma(const struct record_text *text)
 {
 	const char *c = text->line.text;
@@ -90,13 +90,13 @@ static int decimal_comma(const struct record_text *text)
 	return parted ? place : 0;
 }
 
-/* What is read of the file: all numbers, line after line. */
+/* All numbers of the file, by line. */
 struct numbers {
-	int columns; /* of the first line */
+	int columns; /* numbers in the first line */
 	int n, size;
 	double *value;
-	int *line;       /* of each row of `columns` numbers, for messages  (size) */
-	double interval; /* of the printed times: one unit of their last digit [s] */
+	int *line;       /* line of each number, for messages  (size) */
+	double interval; /* resolution of the printed times: one unit of the last digit [s] */
 };
 
 static bool numbers_add(struct record_text *text, struct numbers *numbers, double value)
@@ -137,7 +137,7 @@ static double last_digit(const struct record_text *text)
 	return strchr("eEdD", *c) && *c ? digit * pow(10, atoi(c + 1)) : digit;
 }
 
-/* The numbers of the current line. */
+/* Adds the numbers of the current line. */
 static bool line_numbers(struct record_text *text, struct numbers *numbers)
 {
 	const char *start = text->line.text, *end = start + text->line.length, *c = start + strspn(start, " \t");
@@ -182,7 +182,7 @@ static bool line_numbers(struct record_text *text, struct numbers *numbers)
 
 /* ---- times ---- */
 
-/* A number in the fewest decimal digits that agree with it to a doubt. */
+/* A number rounded to the fewest decimal digits with which it changes by at most `doubt`. */
 static double fewest_digits(double value, double doubt, int *digits)
 {
 	for (*digits = 1; *digits < 17; ++*digits) {
@@ -195,9 +195,9 @@ static double fewest_digits(double value, double doubt, int *digits)
 	return value;
 }
 
-/* The step of times whose mean step is given: that, or 1 over the sampling rate, in the fewest digits that agree with it.
+/* The step of times with a given mean step: the step or the sampling rate is rounded, whichever needs fewer digits.
  *
- *   Times printed to a unit u of their last digit are off by u/2 each, so the mean step of n times by u/(n - 1). */
+ *   Times printed with unit u of the last digit have errors of up to u/2, so the mean step of n times of up to u/(n - 1). */
 static double step_of(const struct numbers *numbers, double mean)
 {
 	const double doubt =
@@ -208,7 +208,7 @@ static double step_of(const struct numbers *numbers, double mean)
 	return digits_rate <= digits ? 1 / rate : step;
 }
 
-/* Whether the times are equally spaced to their last digit; if not, reported. */
+/* Whether the times are equally spaced within their last digit; adds a problem if not. */
 static bool times_even(struct record_text *text, const struct numbers *numbers, double step)
 {
 	const double *t = numbers->value;
@@ -224,7 +224,7 @@ static bool times_even(struct record_text *text, const struct numbers *numbers, 
 	return true;
 }
 
-/* Times and accelerations, the columns of each line. */
+/* Takes times and accelerations from two columns. */
 static bool take_pairs(struct record_text *text, const struct numbers *numbers, struct record *record)
 {
 	const int rows = numbers->n / 2;
@@ -238,7 +238,7 @@ static bool take_pairs(struct record_text *text, const struct numbers *numbers, 
 	return true;
 }
 
-/* Accelerations alone, as many as there are on each line. */
+/* Takes only accelerations, any number per line. */
 static bool take_all(struct record_text *text, const struct numbers *numbers, struct record *record)
 {
 	const double step = text->choice->step;

@@ -6,8 +6,8 @@
  *      1 Comment line(s) follow, each starting with a "|":
  *   26219 acceleration pts, approx  131 secs, units=cm/sec2(04),Format=(8F10.3)
  *
- * Numbers have the width of their line's format and may leave no blank between them.  The step is real value 34, the sampling
- * interval in s; where that is unknown (-999), real value 62, the time between data points in ms.
+ * Numbers have the width in their line's format, possibly without blanks between them.  The step is real value 34, the sampling
+ * interval in s; if that is unknown (-999), real value 62, the time between data points in ms.
  *
  * Source   COSMOS Strong Motion Programs Board, Strong Motion Data Format, version 1.20, 2001 */
 #include "schema/record/record_text.h"
@@ -20,7 +20,7 @@
 enum { REALS_MAX = 200, INTERVAL = 34, INTERVAL_MS = 62, TITLE_LINES = 2, FIRST_LINES = 60 };
 
 struct channel {
-	double reals[REALS_MAX + 1]; /* real values by their number, from 1; NAN: not there */
+	double reals[REALS_MAX + 1]; /* real values by their number, from 1; NAN: missing */
 	int n;                       /* accelerations so far */
 	char title[RECORD_TITLE];
 };
@@ -34,7 +34,7 @@ bool record_cosmos_recognized(struct record_text *text)
 	return false;
 }
 
-/* Width of the numbers in the current line's Format= (8F10.3); 0: it has none. */
+/* Width of the numbers from the current line's Format= (8F10.3); 0: no format. */
 static int format_width(const struct record_text *text)
 {
 	const int at = record_text_find(text, "Format");
@@ -45,11 +45,11 @@ static int format_width(const struct record_text *text)
 		;
 	if (c >= end || !strchr("fFeEiIgGdD", *c))
 		return 0;
-	const int width = atoi(c + 1); // the line goes on behind it, at least with its end
+	const int width = atoi(c + 1); // at least a line end follows
 	return width > 0 && width < 64 ? width : 0;
 }
 
-/* The real values that follow the current line. */
+/* Reads the real values after the current line. */
 static bool read_reals(struct record_text *text, struct channel *channel)
 {
 	double n;
@@ -76,14 +76,14 @@ static bool read_reals(struct record_text *text, struct channel *channel)
 	return true;
 }
 
-/* The step of a channel of n samples; NAN: its header has none. */
+/* The step of a channel; NAN: not in the header. */
 static double step_of(const struct channel *channel)
 {
 	const double seconds = channel->reals[INTERVAL], milliseconds = channel->reals[INTERVAL_MS];
 	return seconds > 0 ? seconds : milliseconds > 0 ? milliseconds / 1000 : NAN;
 }
 
-/* Whether the current line announces data, and whether they are accelerations. */
+/* Whether the current line is the header of data, and whether the data are accelerations. */
 static bool is_data(const struct record_text *text, bool *acceleration)
 {
 	if (record_text_find(text, "pts") < 0 || record_text_find(text, "units") < 0 || !format_width(text))
@@ -92,7 +92,7 @@ static bool is_data(const struct record_text *text, bool *acceleration)
 	return true;
 }
 
-/* The accelerations that the current line announces. */
+/* Reads the accelerations after their header, the current line. */
 static bool read_data(struct record_text *text, const struct channel *channel, struct record *record)
 {
 	double n = 0;
@@ -123,7 +123,7 @@ static bool read_data(struct record_text *text, const struct channel *channel, s
 	return true;
 }
 
-/* Goes through the file; reads acceleration `wanted`, from 1, and stops there, or counts them all for 0. */
+/* Scans the file up to acceleration number `wanted`, from 1, and reads it; wanted 0: counts all accelerations. */
 static bool scan(struct record_text *text, struct channel *channel, int wanted, struct record *record)
 {
 	int title = 0;

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { KEYS_FIRST = 3 }; /* lines of this form at the start make it one of these files */
+enum { KEYS_FIRST = 3 }; /* lines KEY: value at the start that identify such a file */
 
 static bool has_key(const struct record_text *text)
 {

@@ -6,16 +6,16 @@
  *   NPTS=   7807, DT=   .0050 SEC,              or    7807    0.0050    NPTS, DT
  *     -.2309213E-03   ...                       any number of samples per line
  *
- * Source   headers of NGA-West2 and of the older PEER database, as files of both show them */
+ * Source   headers of files of NGA-West2 and of the older PEER database */
 #include "schema/json/json_writer.h"
 #include "schema/record/record_text.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { HEADER_LINES = 8 }; /* in which the four lines are, blank ones included */
+enum { HEADER_LINES = 8 }; /* lines within which the four lines must be, blank ones included */
 
-/* The line that says what the series is; false: there is none among the first lines. */
+/* Moves to the line with the type of the series; false: none among the first lines. */
 static bool series_line(struct record_text *text)
 {
 	for (int i = 0; i < HEADER_LINES && record_text_next(text); i++)
@@ -30,7 +30,7 @@ bool record_peer_recognized(struct record_text *text)
 	return series_line(text);
 }
 
-/* The step and the number of samples from the line that has both. */
+/* Reads the number of samples and the step from the line with NPTS and DT. */
 static bool read_size(struct record_text *text, double *n, double *step)
 {
 	for (int i = 0; i < HEADER_LINES && record_text_next(text); i++) {
@@ -39,7 +39,7 @@ static bool read_size(struct record_text *text, double *n, double *step)
 			continue;
 		if (record_text_value(text, npts + 4, n) && record_text_value(text, dt + 2, step))
 			return true;
-		// the older form has the numbers in front of the names
+		// in the older form the numbers come before the names
 		const char *end = text->line.text + text->line.length, *c = text->line.text;
 		while (c < end && *c == ' ')
 			c++;
@@ -95,7 +95,7 @@ bool record_peer_read(struct record_text *text, struct record *record)
  * Returns  value   (length)   NULL: out of memory
  * Memory   allocates; the caller frees
  *
- * Valid    Read again, a sample differs by no more than the rounding of its division by g.
+ * Valid    A sample that is read back differs at most by the rounding of its division by g.
  * Test     unit_motions: a_peer_file_is_read_back
  */
 char *record_to_peer(const struct record *record, size_t *length)

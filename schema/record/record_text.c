@@ -1,4 +1,4 @@
-/* record_text.c - lines, numbers and units of a record's file. */
+/* record_text.c - reads lines, numbers and units of a record's file. */
 #include "schema/record/record_text.h"
 
 #include <math.h>
@@ -173,7 +173,7 @@ bool record_sized(struct record_text *text, double n, double step, struct record
 	return false;
 }
 
-/* The numbers of the current line. */
+/* Reads the numbers of the current line. */
 static bool line_samples(struct record_text *text, int width, int expected, struct record *record)
 {
 	const char *start = text->line.text, *end = start + text->line.length;
@@ -223,7 +223,7 @@ void record_scale(struct record *record, double factor)
 
 /* ---- units ---- */
 
-/* Units of acceleration, and how files write them.  Source of g: standard gravity, 3rd CGPM 1901. */
+/* Units of acceleration with their spellings in files.  Source of g: standard gravity, 3rd CGPM 1901. */
 static const struct {
 	const char *name;
 	double factor; /* to m/s2 */

@@ -1,7 +1,7 @@
-/* histories.c - what happens in time, signal after signal, as CSV and as a NumPy file: the motion of both oscillators of a study of
- * spectra, the contacts of a study of responses.
+/* histories.c - writes histories by signal as CSV and as a NumPy file: the motion of both oscillators of a floor spectrum study, the
+ * contacts of a response study.
  *
- * Nothing of it is stored: the signals are run once more, to the same bits. */
+ * Histories are not stored: the signals are run again, with bit-identical results. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -44,7 +44,7 @@ enum {
 
 static_assert(ROWS_MAX == 4000000, "a sentence below names it");
 
-/* What a row has beside its signal. */
+/* Columns after `signal`. */
 static const struct columns {
 	int n;
 	const char *names[COLUMNS_MAX];
@@ -62,7 +62,7 @@ struct rows {
 	const struct columns *columns;
 	int signal;
 	int64_t n;
-	const char *reason; /* why there are too many; NULL: there are not */
+	const char *reason; /* message if there are too many rows; NULL: there are not */
 };
 
 static void row_add(struct rows *rows, const double *values)
@@ -77,7 +77,7 @@ static void row_add(struct rows *rows, const double *values)
 		writer_raw(&rows->w, text, (size_t)snprintf(text, sizeof text, "%d", number));
 		for (int j = 0; j < n; j++) {
 			writer_raw(&rows->w, ",", 1);
-			if (isfinite(values[j])) // else there is no value
+			if (isfinite(values[j])) // not finite: an empty cell
 				writer_raw(&rows->w, text, (size_t)writer_digits(values[j], text));
 		}
 		writer_raw(&rows->w, "\r\n", 2);
@@ -107,8 +107,7 @@ static void impact_add(void *into, const struct pound_impact *impact)
 }
 #undef X
 
-/* The history of a signal, or of every one; of one that cannot be followed to its end there is what there is, and of a run that is stopped
- * nothing at all. */
+/* The history of one signal, or of all (-1).  A failed signal has the rows up to its failure; a stopped run has no rows. */
 static void rows_fill(const struct pound_study *study, struct pound_run *run, int signal, struct rows *rows)
 {
 	const int n = study->scene.excitation.signals, from = signal < 0 ? 0 : signal;
@@ -121,8 +120,8 @@ static void rows_fill(const struct pound_study *study, struct pound_run *run, in
 	}
 }
 
-/* Whether a study has samples that are made by running it once more: histories, or contacts of no more ground motion than they
- * may have. */
+/* Whether a study has samples that are computed by running it again: histories, or contacts of a response study within the same
+ * limit on samples of ground motion. */
 bool histories_exist(const struct pound_study *study)
 {
 	return study->spectrum.histories ||
@@ -143,9 +142,9 @@ static struct rows rows_of(const struct pound_study *study, enum format format)
 /* Histories as CSV.
  *
  * Given    study, run  -         -       histories_exist; blocks need not be run
- *          signal      -         -       -1: every one
- * Returns  value       (length)  -       NULL: out of memory or more than ROWS_MAX rows, or the run is stopped
- *          reason      -         -       set where there are too many rows: a sentence
+ *          signal      -         -       -1: all
+ * Returns  value       (length)  -       NULL: out of memory, more than ROWS_MAX rows, or the run was stopped
+ *          reason      -         -       a sentence if there are too many rows, else NULL
  * Memory   allocates; the caller frees
  *
  * Test     unit_histories: a_line_for_every_sample_and_both_sides_of_every_event, a_run_that_is_stopped_leaves_no_file;

@@ -1,4 +1,4 @@
-/* motion_spectrum.c - the response spectrum of a ground motion, by a study without contact that sweeps the frequency. */
+/* motion_spectrum.c - the response spectrum of a ground motion, computed by a study without contact that sweeps the frequency. */
 #include "schema/result/motion_spectrum.h"
 
 #include "engine/ground/excitation.h"
@@ -30,7 +30,7 @@ bool motion_spectrum_periods(const char *list, struct periods *periods)
 	return true;
 }
 
-/* Runs a study by this thread alone. */
+/* Runs a study in this thread. */
 static enum pound_status run_all(struct pound_run *run)
 {
 	enum pound_status status = run ? POUND_OK : POUND_NOMEM;

@@ -7,7 +7,7 @@
 
 enum { PERIODS_MAX = 100 };
 
-/* oscillators on the ground, of 5 % damping */
+/* periods of oscillators on the ground with 5 % damping */
 struct periods {
 	int n;
 	double period[PERIODS_MAX]; /* [s]  (n) */
@@ -16,14 +16,14 @@ struct periods {
 /* Damping ratio of the oscillators. */
 extern const double motion_spectrum_damping;
 
-/* Periods from a list between commas; NULL is an empty list.  false: it is not such a list. */
+/* Reads periods from a comma-separated list; NULL is an empty list.  false: invalid list. */
 bool motion_spectrum_periods(const char *list, struct periods *periods);
-extern const char motion_spectrum_expected[]; /* what a list is */
+extern const char motion_spectrum_expected[]; /* description of a valid list */
 
-/* Pseudo-accelerations omega^2 max |u| of the oscillators, exact for the motion as it is  [m/s2]  (n) */
+/* Pseudo-accelerations omega^2 max |u| of the oscillators, exact for linear interpolation of the motion  [m/s2]  (n) */
 enum pound_status motion_spectrum(const struct record *motion, const struct periods *periods, double *psa);
 
-/* The same on the motion's band-limited interpolation at twice its rate (engine/ground/interpolation.c). */
+/* The same for the band-limited interpolation of the motion at twice its sampling rate (engine/ground/interpolation.c). */
 enum pound_status motion_spectrum_finer(const struct record *motion, const struct periods *periods,
                                         double *psa);
 

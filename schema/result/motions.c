@@ -1,6 +1,6 @@
-/* motions.c - the ground motions of a study, signal after signal, as CSV, as a NumPy file, and one of them as PEER text.
+/* motions.c - writes the ground motions of a study by signal as CSV and as a NumPy file, and one of them as a PEER file.
  *
- * Nothing of them is stored: they are made once more, to the same bits. */
+ * Ground motions are not stored: they are generated again, with bit-identical results. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,7 +47,7 @@ int64_t motions_samples(const struct pound_run *run, const struct motion_choice 
 	return n;
 }
 
-/* A ground motion; false: out of memory. */
+/* Generates a ground motion; false: out of memory. */
 static bool motion_of(const struct pound_run *run, const struct pound_place *place, struct record *motion)
 {
 	*motion = (struct record){0};
@@ -60,7 +60,7 @@ static bool motion_of(const struct pound_run *run, const struct pound_place *pla
 
 typedef void put_sample(struct writer *w, int signal, double time, double acceleration);
 
-/* The samples of the chosen signals, in turn; false: out of memory. */
+/* Calls put for every sample of the chosen signals, in order; false: out of memory. */
 static bool samples_each(const struct pound_run *run, const struct motion_choice *choice, struct writer *w,
                          put_sample *put, int64_t *n)
 {
@@ -117,7 +117,7 @@ char *motions_to_csv(const struct pound_run *run, const struct motion_choice *ch
 	return writer_take(&w, length);
 }
 
-/* Ground motions as a NumPy structured array, on a little-endian machine; the rest as motions_to_csv. */
+/* Ground motions as a NumPy structured array, on a little-endian machine; otherwise as motions_to_csv. */
 char *motions_to_npy(const struct pound_run *run, const struct motion_choice *choice, size_t *length)
 {
 	struct writer elements, file, fields;
@@ -139,7 +139,7 @@ char *motions_to_npy(const struct pound_run *run, const struct motion_choice *ch
 	return writer_take(&file, length);
 }
 
-/* One ground motion as a PEER file (.AT2), in g with all digits; the rest as motions_to_csv. */
+/* One ground motion as a PEER file (.AT2), in g with all digits; otherwise as motions_to_csv. */
 char *motions_to_peer(const struct pound_run *run, const struct motion_choice *choice, size_t *length)
 {
 	struct record motion;
@@ -157,7 +157,7 @@ char *motions_to_peer(const struct pound_run *run, const struct motion_choice *c
 	return text;
 }
 
-/* Adds the rows of a ground motion; false: out of memory. */
+/* Adds the rows of one ground motion; false: out of memory or a failed run. */
 static bool spectrum_add(struct writer *w, const struct pound_run *run, const struct motion_choice *choice,
                          const struct pound_place *place, const struct periods *periods)
 {

@@ -1,4 +1,4 @@
-/* npy.c - the head of a NumPy file that holds records. */
+/* npy.c - the header of a NumPy file with a structured array. */
 #include "schema/result/npy.h"
 
 #include <stdio.h>
@@ -22,7 +22,7 @@ void npy_field(struct writer *fields, const char *name, const char *suffix, cons
 
 /* Magic, version 3 (UTF-8), length, dictionary; padded so that the data start at a multiple of 64.
  *
- * Given    fields    taken
+ * Given    fields    written by npy_field; freed here
  *          n         records that follow
  * Test     unit_samples: a_numpy_file_holds_the_same_numbers
  */

@@ -1,4 +1,4 @@
-/* npy.h - the head of a NumPy file that holds records.
+/* npy.h - the header of a NumPy file with a structured array.
  *
  * Source: numpy.lib.format, version 3.0 */
 #ifndef NPY_H
@@ -6,10 +6,10 @@
 
 #include "schema/json/json_writer.h"
 
-/* A field of the records, its name in two parts; `type` in the words of numpy.dtype. */
+/* Writes a field of the array's dtype: name and suffix, and a type such as "<f8". */
 void npy_field(struct writer *fields, const char *name, const char *suffix, const char *type);
 
-/* Magic, length and dictionary of n records; `fields` is what npy_field wrote.  false: out of memory. */
+/* Writes magic, length and dictionary of n records with the `fields` written by npy_field.  false: out of memory. */
 bool npy_head(struct writer *w, struct writer *fields, int64_t n);
 
 #endif

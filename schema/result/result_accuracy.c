@@ -6,9 +6,9 @@
 
 #include "schema/study/study_json.h"
 
-/* The sizes of the errors, and which is larger than all others together.
+/* Writes the error estimates, and the dominant one: larger than all others together.
  *
- * Given    index   the one that the sampling and the integration may be wrong about most, in words
+ * Given    index   name of the index with the largest error from sampling or integration
  */
 static void write_errors(struct writer *w, const struct pound_study *study,
                          const double errors[POUND_ERROR_NONE], const char *index)
@@ -44,7 +44,8 @@ static void write_errors(struct writer *w, const struct pound_study *study,
 	writer_text(w, "note", note);
 }
 
-/* The index of an output that is the least certain: by its interval, or by the integration where that dominates. */
+/* The name of the least certain index of an output: with the widest interval, or with the largest integration error if that
+ * dominates. */
 static void least_certain(const struct pound_study *study, const struct pound_accuracy *accuracy, char *text,
                           size_t size)
 {
@@ -113,7 +114,7 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 }
 
-/* Writes the worst of all outputs of all cells.
+/* Writes the largest error estimates over all outputs and cells.
  *
  * Test     unit_result_json: every_output_says_how_far_it_may_be_off
  */

@@ -1,7 +1,7 @@
-/* result_csv.c - a result -> CSV, from its JSON: whatever members a result has become columns.
+/* result_csv.c - writes tables of a result as CSV, from its JSON: members become columns.
  *
- * Every table that is asked for by name is a list that the result has in many places: of outputs of cells, of cells or the contacts
- * in them, of sets of fragility curves.  Convergence: one row per setting, its time beside it.  Floor spectra: one row per frequency. */
+ * A table with a name joins the lists of one name from all outputs of all cells, from all cells or their contacts, or from all sets
+ * of fragility curves.  Convergence: one row per setting, with its time.  Floor spectra: one row per frequency. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@ static const cJSON *member(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* The first element of a list that may be absent, and the one behind an element. */
+/* The first element of a list, and the element after one; both for NULL arguments too. */
 static const cJSON *first(const cJSON *list)
 {
 	return list ? list->child : NULL;
@@ -28,18 +28,18 @@ static const cJSON *behind(const cJSON *element)
 
 /* ---- lines ---- */
 
-/* A table in the making.  All lines are made twice, for their columns and then for their values: a line need not have every column, but
- * those that it has are in one order. */
+/* The lines of a table.  All lines are made twice, first to collect columns, then to write values: a line may lack columns, but the
+ * order of columns is the same in all lines. */
 struct lines {
 	struct writer *w;
 	char **columns; /* (n) names */
 	int n, room;
-	int next;       /* column of the current line that comes next */
-	bool gathering; /* columns, not values */
+	int next;       /* next column of the current line */
+	bool gathering; /* first pass: collects columns */
 	bool failed;    /* out of memory */
 };
 
-/* The column of a name from the next one on; n: there is none. */
+/* The column with a name, from the next one on; n: none. */
 static int column_of(const struct lines *lines, const char *name)
 {
 	int k = lines->next;
@@ -48,7 +48,7 @@ static int column_of(const struct lines *lines, const char *name)
 	return k;
 }
 
-/* A new column goes behind the one before it in its line. */
+/* Inserts a new column after the previous one of its line. */
 static void column_add(struct lines *lines, const char *name)
 {
 	if (lines->n == lines->room) {
@@ -88,7 +88,7 @@ static void put_until(struct lines *lines, int column)
 		writer_raw(lines->w, ",", k > 0);
 }
 
-/* The next cell: its name behind a prefix, and its value; NULL: it has none. */
+/* Puts the next cell: prefix and name of its column, and its value; NULL: empty. */
 static void put(struct lines *lines, const char *prefix, const char *name, const cJSON *value)
 {
 	char text[256];
@@ -107,7 +107,7 @@ static void put(struct lines *lines, const char *prefix, const char *name, const
 	lines->next++;
 }
 
-/* The scalar members of an object, each a cell. */
+/* Puts every scalar member of an object, except notes, as a cell. */
 static void put_scalars(struct lines *lines, const cJSON *object, const char *prefix)
 {
 	const cJSON *value;
@@ -137,20 +137,20 @@ static void put_names(struct lines *lines)
 	writer_raw(lines->w, "\r\n", lines->n ? 2 : 0);
 }
 
-/* ---- tables by name: what a line of each has ---- */
+/* ---- tables by name: the cells of a line of each ---- */
 
-/* Where a line of a table belongs, and what it is about. */
+/* The objects of a result from which a line is made. */
 struct place {
 	const cJSON *result, *cell;
 	const cJSON *output;  /* of the cell */
-	const cJSON *contact; /* what has the gaps of the cell: one of its contacts, or the cell */
+	const cJSON *contact; /* owner of the gaps: a contact of the cell, or the cell */
 	const cJSON *set;     /* of fragility curves */
 	const cJSON *element; /* of the table's list */
-	int index;            /* of the element in its list */
-	int point;            /* of the element's curve */
+	int index;            /* of the element in the list */
+	int point;            /* in the element's curve */
 };
 
-/* An intermediate result says in every line of how many rows it is. */
+/* Every line of an intermediate result starts with its number of rows. */
 static void put_cell(struct lines *lines, const struct place *at)
 {
 	put_scalars(lines, member(at->result, "partial"), "partial.");
@@ -212,7 +212,7 @@ static void put_point(struct lines *lines, const struct place *at)
 		put(lines, "", curve[k], cJSON_GetArrayItem(member(at->element, curve[k]), at->point));
 }
 
-/* A row of buildings in one line: every storey, floor and contact by its number. */
+/* A row of buildings in one line: the columns have the numbers of storeys, floors and contacts in their names. */
 static void put_row(struct lines *lines, const cJSON *signal)
 {
 	static const char *const lists[] = {"storeys", "floors"}, *const ones[] = {"storey", "floor"};
@@ -256,7 +256,7 @@ static void put_signal(struct lines *lines, const struct place *at)
 	put_scalars(lines, member(signal, "end"), "end.");
 }
 
-/* A list of a cell's gaps. */
+/* An element of a list of gaps of a cell or a contact. */
 static void put_contact(struct lines *lines, const struct place *at)
 {
 	put_cell(lines, at);
@@ -288,7 +288,7 @@ static void put_curve(struct lines *lines, const struct place *at)
 	put_scalars(lines, at->element, "");
 }
 
-/* One mean of a response, or the numbers of an output of a study with inputs. */
+/* The mean of an output of a response study, or the numbers of an output of a study with inputs. */
 static void put_mean(struct lines *lines, const struct place *at)
 {
 	put_cell(lines, at);
@@ -309,18 +309,18 @@ static void put_record(struct lines *lines, const struct place *at)
 	    put(lines, "", value->string, value);
 }
 
-/* What has the list of a table. */
+/* The object that has the list of a table. */
 enum owner { OUTPUT, CONTACT, CELL, SET, RESULT };
 
-/* The lists that are tables. */
+/* The tables. */
 static const struct table {
 	const char *name;
 	enum owner owner;
 	void (*put)(struct lines *lines, const struct place *at);
 	const char *list;   /* member of the owner */
-	const char *within; /* the list is this member of that one; NULL: that itself */
-	const char *points; /* member of an element with a line for each of its own; NULL: a line an element */
-	bool whole;         /* no list: a line for that member itself */
+	const char *within; /* the list is this member of `list`; NULL: `list` itself */
+	const char *points; /* array of an element with a line per value; NULL: one line per element */
+	bool whole;         /* no list: one line for the member itself */
 } tables[] = {
     {"inputs", OUTPUT, put_input, "inputs", NULL, NULL, false},
     {"second_order", OUTPUT, put_set, "second_order", NULL, NULL, false},
@@ -348,7 +348,7 @@ static const cJSON *list_of(const struct table *table, const cJSON *owner)
 	return table->within ? member(list, table->within) : list;
 }
 
-/* The lines of one element. */
+/* Puts the lines of one element. */
 static void put_element(struct lines *lines, const struct table *table, struct place *at)
 {
 	int n = table->points ? cJSON_GetArraySize(member(at->element, table->points)) : 1;
@@ -369,7 +369,7 @@ static void put_list(struct lines *lines, const struct table *table, struct plac
 		cJSON_ArrayForEach(at->element, list_of(table, owner)) put_element(lines, table, at);
 }
 
-/* The lists of a cell; a study without sweeps may have them itself. */
+/* Puts the lists of a cell; a result without cells passes itself as the cell. */
 static void put_cell_lists(struct lines *lines, const struct table *table, struct place *at)
 {
 	if (table->owner == CELL)
@@ -400,7 +400,7 @@ static void put_table(struct lines *lines, const struct table *table, const cJSO
 	}
 }
 
-/* Every look at the intervals of a design that grew, and what was to be reached. */
+/* One check of the intervals of a growing design, with the requested limits. */
 static void put_look(struct lines *lines, const cJSON *stopping, const cJSON *look, const cJSON *sweep)
 {
 	static const char *const members[] = {"rows", "runs", "half_width", "index", "input", "output"};
@@ -425,7 +425,7 @@ static void put_stopping(struct lines *lines, const cJSON *result)
 /* ---- convergence, floor spectra ---- */
 
 static const char TRIALS[] =
-    "trials"; /* a table that has no name for clients: all of a study of convergence */
+    "trials"; /* internal name, unknown to clients: the table of a convergence study */
 
 static void put_trial(struct lines *lines, const cJSON *row, const cJSON *time)
 {
@@ -444,7 +444,7 @@ static void put_trials(struct lines *lines, const cJSON *rows, const cJSON *time
 	}
 }
 
-/* Columns of numbers, one for each array of each spectrum, side by side. */
+/* A column of numbers: one array of one spectrum. */
 struct column {
 	char name[64];
 	const cJSON *next;
@@ -486,7 +486,7 @@ static void put_spectra(struct writer *w, const cJSON *result)
 	}
 }
 
-/* The tables of that name, of which a result has one at most. */
+/* Puts the table of that name; of tables with the same name a result has at most one. */
 static void put_named(struct lines *lines, const char *name, const cJSON *result)
 {
 	if (strcmp(name, "stopping") == 0)
@@ -498,7 +498,7 @@ static void put_named(struct lines *lines, const char *name, const cJSON *result
 			put_table(lines, &tables[k], result);
 }
 
-/* A table by its name: once for its columns, and once more for its values.  false: out of memory. */
+/* Writes a table by its name, in two passes: columns, then values.  false: out of memory. */
 static bool put_lines(struct writer *w, const char *name, const cJSON *result)
 {
 	struct lines lines = {.w = w, .gathering = true};
@@ -514,7 +514,7 @@ static bool put_lines(struct writer *w, const char *name, const cJSON *result)
 	return !lines.failed;
 }
 
-/* The first table of a result of any kind, by the members that it has. */
+/* Writes the default table of a result, found by the members of the result. */
 static bool put_first(struct writer *w, const cJSON *result)
 {
 	static const char *const names[] = {TRIALS, "pounding", "signals", "inputs"};
@@ -528,9 +528,9 @@ static bool put_first(struct writer *w, const cJSON *result)
 
 /* A result as CSV (RFC 4180).
  *
- * Given    json      (json_length)  -  the bytes of result_to_json
- *          table     -              -  one of RESULT_TABLES; NULL: the first of its kind
- * Returns  value     (length)       -  CSV, empty when the result has no such table; NULL: out of memory
+ * Given    json      (json_length)  -  from result_to_json
+ *          table     -              -  one of RESULT_TABLES; NULL: the default table of the kind
+ * Returns  value     (length)       -  CSV, empty if the result has no such table; NULL: out of memory
  * Memory   allocates; the caller frees
  *
  * Test     unit_result_csv: a_row_for_every_cell_output_and_input
@@ -554,12 +554,12 @@ char *result_to_csv(const char *json, size_t json_length, const char *table, siz
 	return csv;
 }
 
-/* The next cell of such a table, unquoted.
+/* Reads the next cell of a CSV table, unquoted.
  *
- * Given    csv, end   (end - csv)  -  from the start of a cell on
- * Returns  cell       (size)       -  its text, cut where it does not fit
- *          sign       -            -  what follows: a comma, or a carriage return behind the last of its line
- *          value      -            -  bytes that both take
+ * Given    csv, end   (end - csv)  -  csv is at the start of a cell
+ * Returns  cell       (size)       -  its text, truncated to fit
+ *          sign       -            -  the delimiter: a comma, or a carriage return after the last cell of a line
+ *          value      -            -  bytes of cell and delimiter
  */
 size_t result_csv_cell(const char *csv, const char *end, char *cell, size_t size, char *sign)
 {

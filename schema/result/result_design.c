@@ -1,4 +1,4 @@
-/* result_design.c - the rows a sensitivity result is of: all, those that were enough, or the first so far. */
+/* result_design.c - the rows of a sensitivity result: all, as many as were enough, or the first ones so far. */
 #include "schema/result/result_design.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 static const char *const index_names[] = {POUND_INDICES(X)};
 #undef X
 
-/* The study that was run, where the engine chose the number of signals. */
+/* The study as run: with the number of signals that the engine chose, if it did. */
 static struct pound_study as_run_of(const struct pound_study *study, const struct pound_result *result)
 {
 	struct pound_study as_run = *study;
@@ -25,7 +25,7 @@ static bool grows(const struct pound_study *study)
 	return study->design.until.half_width > 0;
 }
 
-/* Fewer rows than the study will have; of a model that is run elsewhere none will come. */
+/* Whether more rows will follow; results of external models are never partial. */
 static bool partial(const struct pound_study *study, const struct pound_result *result)
 {
 	if (study->elsewhere)
@@ -59,7 +59,7 @@ static void write_look(struct writer *w, const char *name, const struct pound_st
 	writer_end(w);
 }
 
-/* Why rows have so many signals: what the pilot saw, what each number of signals was foreseen to give. */
+/* Why the engine chose this number of signals: variances from the pilot, and the predicted half-width for each number of signals. */
 static void write_split(struct writer *w, const struct pound_study *study, const struct pound_result *result)
 {
 	const struct pound_split *split = &result->split;
@@ -108,7 +108,7 @@ static void write_split(struct writer *w, const struct pound_study *study, const
 	writer_end(w);
 }
 
-/* Why the design grew no further, and which interval was the widest then. */
+/* Why the design stopped growing, and the widest interval at that point. */
 static void write_growth(struct writer *w, const struct pound_study *study, const struct pound_result *result)
 {
 	const struct pound_until *until = &study->design.until;
@@ -145,7 +145,7 @@ static void write_growth(struct writer *w, const struct pound_study *study, cons
 	writer_text(w, "note", note);
 }
 
-/* What there is to say about a design: points of a net are even for a power of two in each scramble.
+/* A note about a design: Sobol' points are most uniform if each randomisation has a power of two of them.
  *
  * Test     unit_result_json: points_that_do_not_fill_their_nets_are_noted
  */
@@ -169,7 +169,7 @@ bool result_design_note(const struct pound_study *study, char *text, size_t size
 	return *text;
 }
 
-/* Writes the members `design`, `partial` (of an intermediate result) and `stopping` (of a design that grew).
+/* Writes the members `design`, `partial` (of an intermediate result) and `stopping` (of a growing design).
  *
  * Test     unit_result_json: a_result_says_why_its_design_grew_no_further
  */

@@ -1,4 +1,4 @@
-/* result_design.h - the rows a sensitivity result is of, and why there are so many. */
+/* result_design.h - the rows of a sensitivity result and why the design stopped there. */
 #ifndef RESULT_DESIGN_H
 #define RESULT_DESIGN_H
 
@@ -7,7 +7,7 @@
 
 enum { RESULT_NOTE_SIZE = 300 };
 
-/* What there is to say about a design before it is run; false: nothing. */
+/* A note about a design, known before it is run; false: none. */
 bool result_design_note(const struct pound_study *study, char *text, size_t size);
 
 void result_design(struct writer *w, const struct pound_study *study, const struct pound_result *result);

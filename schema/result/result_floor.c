@@ -1,4 +1,4 @@
-/* result_floor.c - floor spectra -> JSON: ordinates over the signals, the peaks among them, what they are off by. */
+/* result_floor.c - writes floor spectra as JSON: ordinates over the signals, peaks of the mean, error estimates. */
 #include "schema/result/result_floor.h"
 
 #include <math.h>
@@ -34,8 +34,7 @@ static void write_spectra(struct writer *w, const struct pound_floor_result *flo
 	writer_end(w);
 }
 
-/* The frequencies at which the mean spectrum with pounding is larger than at both their neighbours, beside what
- * Eq. (21) has there. */
+/* The local maxima of the mean spectrum with pounding, with the value of Eq. (21) at the same frequency. */
 static void write_peaks(struct writer *w, const struct pound_study *study,
                         const struct pound_floor_result *floor)
 {
@@ -77,7 +76,7 @@ static void write_accuracy(struct writer *w, const struct pound_floor_result *fl
 	writer_end(w);
 }
 
-/* The result of a study of spectra.
+/* Writes the result of a floor spectrum study.
  *
  * Test     unit_result_floor: every_spectrum_has_a_number_for_every_frequency
  */
@@ -104,8 +103,8 @@ void result_floor_spectra(struct writer *w, const struct pound_study *study,
 	write_accuracy(w, floor, n);
 }
 
-/* Members of an output of a sensitivity study about its ordinate; all outputs have these members where one of them is an
- * ordinate, so that they fit into one table.
+/* Writes frequency, damping and correlation of an output that is an ordinate; if one output is an ordinate, all outputs have these
+ * members, so that they fit into one table.
  *
  * Test     unit_result_floor: an_ordinate_has_its_frequency_and_its_correlation_with_the_impulse
  */

@@ -1,4 +1,4 @@
-/* result_json.c - a study's result -> JSON, member by member as the contract names them. */
+/* result_json.c - writes a study's result as JSON, with the members that the OpenAPI document names. */
 #include "schema/result/result_json.h"
 
 #include <math.h>
@@ -38,7 +38,7 @@ static bool at_end(int measure)
 	return strncmp(measures[measure].member, "end_", 4) == 0;
 }
 
-/* The measures of one oscillator, of the pair (-1), or of the end. */
+/* The measures of one oscillator or of the pair (-1), over the motion or at its end. */
 static void write_measures(struct writer *w, const struct pound_response *response, int oscillator, bool end)
 {
 	for (int k = 0; k < MEASURES; k++)
@@ -63,8 +63,8 @@ static void write_signal(struct writer *w, const struct pound_cell *cell, int in
 	writer_end(w);
 }
 
-/* The largest that is missing in the energy balances of n cells, and of how many responses; null: a solver that does not keep
- * them. */
+/* The largest residual of the energy balances in n cells, and the number of responses with one; null: the solver has no energy
+ * balance. */
 static void write_balance(struct writer *w, const struct pound_cell *cells, int n)
 {
 	double residual = NAN;
@@ -145,7 +145,7 @@ void result_estimate(struct writer *w, const char *name, const struct pound_esti
 	writer_number(w, member, estimate->high);
 }
 
-/* All notes about an output's indices, in one text. */
+/* All notes about an output's indices, in one string. */
 static void write_notes(struct writer *w, const struct pound_indices *indices)
 {
 	char text[2048];
@@ -160,7 +160,7 @@ static void write_notes(struct writer *w, const struct pound_indices *indices)
 		writer_text(w, "note", text);
 }
 
-/* Whether the variance left without the noise, of which all indices but the raw ones are shares, may be 0. */
+/* Whether the noise-corrected variance, the denominator of all indices except the raw ones, may be 0. */
 static bool lost_in_noise(const struct pound_indices *indices)
 {
 	return indices->notes >> POUND_NOTE_NOISE & 1;
@@ -180,7 +180,7 @@ static void write_excitation(struct writer *w, const struct pound_indices *indic
 	writer_end(w);
 }
 
-/* The columns of an estimator that the study names. */
+/* The indices of the estimator that the study names. */
 static void write_named(struct writer *w, const char *estimator, const struct pound_indices *indices, int j,
                         struct result_notes *said)
 {
@@ -215,15 +215,15 @@ static void write_input(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 }
 
-/* A list of indices of sets of inputs. */
+/* Indices of sets of inputs. */
 struct sets {
-	const char *name, *index; /* of the list, of the index */
+	const char *name, *index; /* members: name of the list, name of the index */
 	const struct pound_set_index *set;
 	int n;
 	struct result_notes_source source;
 };
 
-/* Indices of sets of inputs; nothing if the design gives none. */
+/* Writes indices of sets of inputs; nothing if the design gives none. */
 static void write_sets(struct writer *w, const struct pound_study *study, const struct sets *sets)
 {
 	if (sets->n == 0)
@@ -247,7 +247,7 @@ static void write_sets(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 }
 
-/* The indices of groups of inputs; nothing if none were requested. */
+/* Writes the indices of groups of inputs; nothing if none were requested. */
 static void write_groups(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
 {
@@ -271,7 +271,7 @@ static void write_groups(struct writer *w, const struct pound_study *study,
 	writer_end(w);
 }
 
-/* The indices of ratios and of the remaining inputs; nothing if none were requested. */
+/* Writes the indices of ratios and of the remaining inputs; nothing if none were requested. */
 static void write_ratios(struct writer *w, const struct pound_study *study,
                          const struct pound_indices *indices)
 {
@@ -326,7 +326,7 @@ static bool has_points(const struct pound_curve *curve)
 	return k < POUND_CURVE;
 }
 
-/* The mean output given each input; nothing where there is none. */
+/* Writes the mean output given each input; nothing if there are no curves. */
 void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves)
 {
 	if (!curves || !has_points(&curves[0]))
@@ -416,7 +416,7 @@ static void write_trial(struct writer *w, const struct pound_trial *trial)
 	writer_end(w);
 }
 
-/* Trial 0 is the reference, trial 1 the second opinion on it. */
+/* Trial 0 is the reference, trial 1 an independent check of the reference. */
 static void write_trials(struct writer *w, const struct pound_result *result)
 {
 	writer_whole(w, "runs", result->cells[0].runs);
@@ -441,7 +441,7 @@ static void write_trials(struct writer *w, const struct pound_result *result)
 	writer_end(w);
 }
 
-/* CPU time of a run in each row. */
+/* CPU time per run of each trial. */
 static void write_run_times(struct writer *w, const struct pound_result *result)
 {
 	writer_array(w, "run_cpu_s", WRITER_LINE);
@@ -452,7 +452,7 @@ static void write_run_times(struct writer *w, const struct pound_result *result)
 
 /* ---- cells ---- */
 
-/* Outputs that were asked and that this cell cannot have. */
+/* Requested outputs that do not exist in this cell. */
 static void write_not_applicable(struct writer *w, const struct pound_study *study,
                                  const struct pound_scene *scene)
 {
@@ -532,7 +532,7 @@ static void leave_out(struct writer *w, int64_t n, const char *what, const char 
 	writer_text(w, NULL, sentence);
 }
 
-/* What was not needed, in sentences, from the counts alone. */
+/* Runs that were not needed, in sentences, from the counts. */
 static void write_left_out(struct writer *w, const struct pound_study *study, const struct pound_work *work)
 {
 	static const char repeated[] = "equal to one already made", unasked[] = "no output needs them";
@@ -571,7 +571,7 @@ static void write_left_out(struct writer *w, const struct pound_study *study, co
 	writer_end(w);
 }
 
-/* How the searches for yield displacements ended; nothing where there were none. */
+/* How the searches for yield displacements ended; nothing without searches. */
 static void write_searches(struct writer *w, const struct pound_work *work)
 {
 	if (!work->yield_searches)
@@ -631,11 +631,11 @@ static void write_timing(struct writer *w, const struct pound_study *study, cons
 	writer_end(w);
 }
 
-/* The bytes of a result.
+/* Writes a result as JSON.
  *
  * Given    study     -         -       read by study_from_json
  *          result    -         -       of that study
- *          timing    -         s       what it took; NULL: left out
+ *          timing    -         s       NULL: no member "timing"
  * Returns  value     (length)  -       JSON; NULL: out of memory
  * Memory   allocates; the caller frees
  *

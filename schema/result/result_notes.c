@@ -1,7 +1,7 @@
-/* result_notes.c - what there is to say about estimates of indices, in words that are true of their numbers.
+/* result_notes.c - notes about estimates of indices outside [0, 1] or outside their intervals.
  *
- * An index lies in [0, 1].  Estimates are not clipped, so that one of a small index may come out below 0; one that is
- * further off, or not in its own interval, has another cause, and the sentence names that. */
+ * An index lies in [0, 1].  Estimates are not clipped, so the estimate of a small index may be below 0.  An estimate further
+ * outside, or outside its own interval, has another cause, which the note names. */
 #include "schema/result/result_notes.h"
 
 #include <assert.h>
@@ -9,18 +9,18 @@
 #include <stdio.h>
 #include <string.h>
 
-// sums over up to 2^20 rows round to no more: an index that is exactly 0 or 1 needs no words
+// bound of rounding errors in sums over up to 2^20 rows: an index of exactly 0 or 1 gets no note
 static const double ROUNDING = 0x1p-33;
 
-/* ---- what may be true of an estimate ---- */
+/* ---- conditions on an estimate ---- */
 
-/* How far a number is from [0, 1]. */
+/* Distance of a number from [0, 1]. */
 static double beyond(double value)
 {
 	return fmax(fmax(-value, value - 1), 0);
 }
 
-// by more than all of the variance: no sampling error of a share
+// off by more than the whole variance: too far for a sampling error of a variance fraction
 static bool far(const struct pound_estimate *e)
 {
 	return beyond(e->value) > 1;
@@ -52,10 +52,10 @@ static bool below(const struct pound_estimate *e)
 }
 
 // clang-format off
-/* The first row that holds says what there is to say. */
+/* The first rule that holds gives the note. */
 static const struct rule {
 	bool (*holds)(const struct pound_estimate *e);
-	bool lost;  /* where the variance may be lost in noise only */
+	bool lost;  /* only if the noise-corrected variance may be 0 */
 	bool small; /* a sampling error that its interval shows */
 	const char *text;
 } rules[] = {
@@ -78,7 +78,7 @@ void result_notes_init(struct result_notes *notes)
 		*notes->names[k] = 0;
 }
 
-/* Adds what there is to say about an estimate.
+/* Adds an estimate to the names of the note that applies to it, if any.
  *
  * Test     unit_result_notes
  */
@@ -94,7 +94,7 @@ void result_notes_add(struct result_notes *notes, const char *name, const struct
 	snprintf(notes->names[k] + n, RESULT_NOTES_NAMES - n, "%s%s", n ? ", " : "", name);
 }
 
-/* Writes member "note": the names of estimates, and what holds of them; nothing where there is nothing to say. */
+/* Writes member "note", the names of estimates before each note that applies; nothing if none does. */
 void result_notes_write(struct writer *w, const struct result_notes *notes)
 {
 	char text[RESULT_NOTES * (RESULT_NOTES_NAMES + 120)];
@@ -107,7 +107,7 @@ void result_notes_write(struct writer *w, const struct result_notes *notes)
 		writer_text(w, "note", text);
 }
 
-/* Why runs have no result, the reasons that there are. */
+/* Writes the reasons of failed runs, with the number of runs of each. */
 void result_failures(struct writer *w, const struct pound_work *work)
 {
 	static const char *const reasons[] = {

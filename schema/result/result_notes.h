@@ -1,4 +1,4 @@
-/* result_notes.h - what there is to say about estimates of indices, in words that are true of their numbers. */
+/* result_notes.h - notes about estimates of indices outside [0, 1] or outside their intervals. */
 #ifndef RESULT_NOTES_H
 #define RESULT_NOTES_H
 
@@ -7,15 +7,15 @@
 
 enum { RESULT_NOTES = 8, RESULT_NOTES_NAMES = 512 };
 
-/* Names of the estimates that each sentence is about. */
+/* Names of the estimates to which each note applies. */
 struct result_notes {
 	char names[RESULT_NOTES][RESULT_NOTES_NAMES];
 };
 
-/* Where an estimate comes from. */
+/* Properties of an estimate that decide which notes apply. */
 struct result_notes_source {
-	bool lost;       /* the variance that it is a share of may be 0, once the noise is taken away */
-	bool large_only; /* a sampling error that its interval shows needs no words */
+	bool lost;       /* the noise-corrected variance, its denominator, may be 0 */
+	bool large_only; /* no note for a sampling error that the interval shows */
 };
 
 void result_notes_init(struct result_notes *notes);
@@ -23,6 +23,6 @@ void result_notes_add(struct result_notes *notes, const char *name, const struct
                       struct result_notes_source source);
 void result_notes_write(struct writer *w, const struct result_notes *notes);
 
-void result_failures(struct writer *w, const struct pound_work *work); /* why runs have no result */
+void result_failures(struct writer *w, const struct pound_work *work); /* reasons of failed runs */
 
 #endif

@@ -1,4 +1,4 @@
-/* result_row.c - responses of rows of buildings -> JSON: by building and storey, floor, contact. */
+/* result_row.c - writes responses of rows of buildings as JSON: by building and storey, floor, contact. */
 #include "schema/result/result_row.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ enum {
 	N_STOREY = sizeof storey_measures / sizeof storey_measures[0],
 	N_FLOOR = sizeof floor_measures / sizeof floor_measures[0],
 	N_CONTACT = sizeof contact_measures / sizeof contact_measures[0],
-	N_END = 2, /* of a floor's measures, the last ones: at the end of the signal */
+	N_END = 2, /* number of floor measures at the end of the signal, the last in the list */
 };
 
 static void write_measures(struct writer *w, const struct measure *measures, int n, const void *of)
@@ -69,7 +69,7 @@ static void write_contact(struct writer *w, const struct pound_scene *scene, int
 	writer_end(w);
 }
 
-/* The members of the response to one signal.
+/* Writes the members of the response to one signal.
  *
  * Test     unit_row_results: rows_have_their_known_answers
  */

@@ -5,12 +5,12 @@
 #include "engine/pound.h"
 #include "schema/json/json_writer.h"
 
-/* One signal; the scene has the buildings of its cell. */
+/* Writes the response to one signal; `scene` has the buildings of the cell. */
 void result_row_signal(struct writer *w, const struct pound_scene *scene,
                        const struct pound_row_response *row);
 bool result_row_moves(const struct pound_row_response *row, const struct pound_scene *scene);
 
-/* Members of an output about its place, of all outputs where one of them has one. */
+/* Writes the place of an output; null for outputs without a place, if another output of the study has one. */
 void result_row_place(struct writer *w, const struct pound_study *study, int output);
 
 #endif

@@ -1,4 +1,4 @@
-/* result_separation.c - how wide a gap has to be -> JSON. */
+/* result_separation.c - writes gaps needed, probabilities of pounding and fragility curves as JSON. */
 #include "schema/result/result_separation.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "schema/result/result_json.h"
 #include "schema/study/study_json.h"
 
-/* The ends of an interval beside its value. */
+/* Writes a value and the ends of its interval. */
 static void write_interval(struct writer *w, const char *names[3], const struct pound_estimate *estimate)
 {
 	writer_number(w, names[0], estimate->value);
@@ -33,7 +33,7 @@ static void write_rules(struct writer *w, const struct pound_needs *needs)
 	writer_end(w);
 }
 
-/* Which contact of a row. */
+/* Writes the position of a contact in a row. */
 static void write_place(struct writer *w, const struct pound_scene *scene, int contact)
 {
 	struct pound_row_contact of;

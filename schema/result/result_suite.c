@@ -1,4 +1,4 @@
-/* result_suite.c - recorded ground motions of a result -> JSON: what the records are, and what they were multiplied by. */
+/* result_suite.c - writes the recorded ground motions of a result as JSON: records and their factors. */
 #include "schema/result/result_suite.h"
 
 #include <math.h>
@@ -44,8 +44,8 @@ static void write_record(struct writer *w, const struct pound_excitation *suite,
 	writer_end(w);
 }
 
-/* The records of a suite: of each its peak as given, what linear interpolation between its samples costs, the peak or spectral acceleration that its intensity is divided by (null: not
- * scaled), and the factor of its samples (null: it varies, and signals of a response have it).
+/* Writes the records of a suite: peak as given, error of linear interpolation between samples, peak or spectral acceleration before
+ * scaling (null: not scaled), and the factor of the samples (null: it varies; the signals of a response have it).
  *
  * Test     unit_suite: factors_come_back_in_the_result
  */

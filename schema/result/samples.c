@@ -1,6 +1,7 @@
-/* samples.c - every input row of a sensitivity study and its outputs, as CSV and as a NumPy file.
+/* samples.c - writes all samples of a sensitivity study, inputs and outputs, as CSV and as a NumPy file.
  *
- * Cells in order, rows i, samples A_i, B_i, AB_i of each input, and what other mixtures the order of the design has: the order that `pound indices` reads. */
+ * By cell, row i, samples A_i, B_i, AB_i of each input, and further mixtures of A and B if the design has them: the order that
+ * `pound indices` reads. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +25,7 @@ struct sample {
 
 typedef void put_sample(struct writer *w, const struct sample *sample);
 
-/* Nothing of it is to be used when the run is stopped meanwhile. */
+/* Calls put for every sample; sets w->failed if the run is stopped meanwhile. */
 static void samples_each(const struct pound_study *study, const struct pound_run *run, struct writer *w,
                          put_sample *put)
 {
@@ -41,7 +42,7 @@ static void samples_each(const struct pound_study *study, const struct pound_run
 	}
 }
 
-/* An output and its variance, NAN where the cell has none. */
+/* An output and its variance, NAN if the cell does not have the output. */
 static void output_of(const struct sample *s, int o, double *mean, double *variance)
 {
 	struct pound_sample_output output = {NAN, NAN};
@@ -88,7 +89,7 @@ static void put_header(struct writer *w, const struct pound_study *study)
 	writer_raw(w, "\r\n", 2);
 }
 
-/* "A", "B", and mixtures by the matrix of most columns, the other, and the names of the columns from that one: "AB_f_2". */
+/* "A", "B", or a mixture: the matrix of most columns, the other one, and the names of the inputs from the other: "AB_f_2". */
 static void put_sample_name(struct writer *w, const struct pound_study *study, int sample)
 {
 	char name[2 + POUND_INPUTS_MAX * 128];
@@ -138,7 +139,7 @@ bool samples_exist(const struct pound_study *study)
 	return pound_study_sampled(study) || histories_exist(study);
 }
 
-/* The samples as CSV; an empty cell where there is no value.
+/* The samples as CSV; missing values are empty cells.
  *
  * Given    study, run  -         -       a finished sensitivity study
  * Returns  value       (length)  -       NULL: out of memory, or the run is stopped
@@ -199,7 +200,7 @@ static void put_record(struct writer *w, const struct sample *s)
 }
 
 /* The samples as a NumPy structured array, on a little-endian machine; `sample` is 0 for A, 1 for B, 2 + j for
- * AB of input j, a swept choice is its name in bytes, a value that is not there NaN.
+ * AB of input j; swept choices are byte strings, missing values NaN.
  *
  * Given    study, run  -         -       a finished sensitivity study
  * Returns  value       (length)  -       the bytes of an .npy file; NULL: out of memory, or the run is stopped

@@ -1,6 +1,6 @@
-/* widest_interval.c - the widest of all intervals, and the narrowest that the same output had of fewer rows.
+/* widest_interval.c - the widest of all intervals, and the narrowest interval of the same output from fewer rows.
  *
- * Where few rows make much of a variance, fewer rows may hold none of them: their interval is narrower, and misses the index. */
+ * If a few rare rows make much of a variance, fewer rows may contain none of them: the interval is then narrower and wrong. */
 #include "schema/result/widest_interval.h"
 
 #include <math.h>
@@ -11,8 +11,8 @@ enum { PATH_SIZE = 128 };
 
 /* The widest interval of one output, by number of rows. */
 struct widths {
-	const char *output, *input, *index; /* of all rows */
-	double last, least;                 /* half widths of all rows, and the narrowest of fewer rows */
+	const char *output, *input, *index; /* from all rows */
+	double last, least;                 /* half-widths from all rows, and the narrowest from fewer rows */
 	double rows, rows_least, rows_to_halve;
 };
 

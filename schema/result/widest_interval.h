@@ -1,4 +1,4 @@
-/* widest_interval.h - how wide the widest interval of a sensitivity result is, in sentences for people. */
+/* widest_interval.h - the widest interval of a sensitivity result, in sentences for people. */
 #ifndef WIDEST_INTERVAL_H
 #define WIDEST_INTERVAL_H
 
@@ -6,10 +6,10 @@
 
 enum { WIDEST_TEXT = 2048 };
 
-/* Each sentence is empty where there is nothing to say. */
+/* A sentence that does not apply is empty. */
 struct widest_interval {
-	char size[WIDEST_TEXT];     /* which it is, and the rows that would halve it */
-	char narrower[WIDEST_TEXT]; /* why fewer rows had a narrower one, and which of them to quote */
+	char size[WIDEST_TEXT];     /* its half-width and index, and the rows that would halve it */
+	char narrower[WIDEST_TEXT]; /* why fewer rows had a narrower interval, and which interval to quote */
 };
 
 void widest_interval_find(const struct reading *result, struct widest_interval *text);

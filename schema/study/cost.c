@@ -1,7 +1,7 @@
-/* What a study will take, before any of it is run.
+/* cost.c - estimates the CPU time, memory and storage of a study before it is run.
  *
- * Operations are counted as the engine shares them (operations.c), and each has its seconds.  soak_valid says how near this is, and
- * unit_estimates for a part of its studies. */
+ * CPU time: the number of each operation (operations.c) times its seconds.  Test soak_valid measures the accuracy, unit_estimates
+ * for some of its studies. */
 #include "schema/study/cost.h"
 
 #include <math.h>
@@ -16,10 +16,10 @@ enum { MIB = 1 << 20 };
 
 enum { KINDS = 4 };
 
-/* Seconds of one core for each, by the kind of study: a response study keeps the energy balances of its first signals; its other
- * runs take what those of a sensitivity study do.
- * Fitted to 2,500 valid studies (soak_valid has their distribution) with eight lanes, and those of chains to 2,280: there an
- * estimate that is too small weighs 2.5 times as much as one that is too large. */
+/* Seconds of one core per operation and kind of study.  A response study computes energy balances for its first signals only; its
+ * other runs cost as much as runs of a sensitivity study.
+ * Fitted to 2,500 valid studies (distribution: soak_valid) with eight lanes, for rows of buildings to 2,280: there an estimate that
+ * is too small weighs 2.5 times as much as one that is too large. */
 static const double seconds_of[OPERATIONS][KINDS] = {
     // response, sensitivity, convergence, floor_spectrum
     [STUDY] = {1e-3, 1e-3, 1e-3, 1e-3},
@@ -72,20 +72,20 @@ static const double seconds_of[OPERATIONS][KINDS] = {
     [CLOCK] = {0, 0, 0.029, 0},
 };
 
-/* How much more than estimated nearly all studies take at most, by what is known of their contacts.  Chains, which are rows of
- * buildings and pairs in a contact that is not linear throughout, may have long series of small impacts, most of all where their
- * neighbors touch at rest: whether they do, no count can know before a run. */
+/* CPU time that nearly all studies stay below, over the estimate.  Chains (rows of buildings, and pairs with a contact that is not
+ * linear) may have long series of small impacts, most of all if neighbors touch at rest; these series cannot be predicted before
+ * a run. */
 static const double HIGH = 3, HIGH_CHAIN = 5, HIGH_CHAIN_AT_REST = 13;
 
-/* [bytes] in a result: of an index or of a signal, with its name and all members beside it */
+/* [bytes] in a result: the object of an index, of a signal, a number, a measure of a row, and all else */
 static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, MEASURE_BYTES = 45,
                     DOCUMENT_BYTES = 3000;
 
-/* [bytes] of memory for a study, for a number of its document, and for a byte of its result, which is text that grows by doubling
- * and is then put into the database */
+/* [bytes] of memory for a study, per number of its document, and per byte of its result: the text grows by doubling before it is
+ * stored in the database */
 static const double STUDY_MEMORY = 1.5 * MIB, NUMBER_MEMORY = 100, RESULT_MEMORY = 2;
 
-/* Memory of the records that a study has: those that its document holds pass through a tree of their numbers. */
+/* Memory of a study's records: the parser makes a tree node of each number. */
 static double record_memory(const struct pound_study *study)
 {
 	const struct pound_excitation *e = &study->scene.excitation;
@@ -123,11 +123,11 @@ static double high(const struct pound_study *study)
 	                                                                                   : HIGH_CHAIN_AT_REST;
 }
 
-/* What a study will take.
+/* Estimates the cost of a study.
  *
  * Given    asked       valid
- *          n_workers   that run its blocks, each in work space of its own
- * Returns  value       runs exactly; time, bytes and memory as above
+ *          n_workers   workers that run its blocks, each with its own work space
+ * Returns  value       exact number of runs; estimated time, bytes and memory
  * Test     unit_cost: what_is_asked_twice_costs_twice; soak_cost: an_estimate_is_near_what_a_study_takes
  */
 struct cost cost_of(const struct pound_study *asked, int n_workers)
@@ -136,7 +136,7 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 	struct cost cost = {.runs = study_runs(study),
 	                    .cpu_s = seconds(study, 0, OPERATIONS),
 	                    .bytes = DOCUMENT_BYTES + study_separation_bytes(asked)};
-	double cells = study_cells(study), runs = (double)cost.runs, numbers; // doubles that are stored of a run
+	double cells = study_cells(study), runs = (double)cost.runs, numbers; // doubles stored per run
 	cost.cpu_s_high = high(study) * cost.cpu_s;
 	if (study->kind == POUND_KIND_SENSITIVITY) {
 		numbers = 2 * study->n_outputs;

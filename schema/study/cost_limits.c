@@ -1,4 +1,4 @@
-/* What a study will take, beside what a server allows and as a document. */
+/* cost_limits.c - compares the cost of a study with the limits of a server, and writes it as JSON. */
 #include <math.h>
 
 #include "schema/json/json_writer.h"
@@ -8,10 +8,10 @@
 
 enum { MIB = 1 << 20 };
 
-/* Whether a server takes a study.
+/* Whether a study is within the limits of a server.
  *
- * Given    most       of each, that it takes
- * Returns  problems   a sentence for every limit that the study would go over
+ * Given    most       limits of the server
+ * Returns  problems   one for every limit that the study exceeds
  * Test     service_submit: a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked
  */
 bool cost_allowed(const struct cost *cost, const struct cost *most, struct problems *problems)
@@ -34,7 +34,7 @@ bool cost_allowed(const struct cost *cost, const struct cost *most, struct probl
 	return problems->n == 0;
 }
 
-/* The object Estimate of the OpenAPI document. */
+/* Writes the object Estimate of the OpenAPI document. */
 char *cost_to_json(const struct cost *cost, const struct pound_study *study, size_t *length)
 {
 	struct writer w;

@@ -1,11 +1,11 @@
-/* cost_tried.c - what a study will take, by a few of its runs.
+/* cost_tried.c - corrects the estimated CPU time of a study with the measured time of a few of its runs.
  *
- * What operations_count cannot know, most of all how often small impacts follow each other, and how fast the machine is, a few
- * runs show: their CPU time over what was counted for them is by what the count of all is multiplied.
+ * operations_count cannot know how often small impacts follow each other, nor how fast the machine is.  A trial measures a few
+ * runs; the ratio of measured to estimated time of the trial corrects the estimate of all runs.
  *
- * The trial is the study with few signals or rows, and with no more than three values of a sweep; four times as many runs follow
- * while they take next to nothing.  One that is stopped has at least shown a lower bound; where that is near what was counted, the
- * runs are of an uncommon kind, and get more time. */
+ * The trial is the study with few signals or rows and at most three values per sweep; while a trial takes hardly any time, it is
+ * repeated with four times as many runs.  A trial that is stopped gives a lower bound; if the bound is near the estimate or above,
+ * the runs are uncommonly slow and get more time. */
 #include <math.h>
 
 #include "schema/study/cost.h"
@@ -13,20 +13,20 @@
 
 enum { SWEEP_VALUES = 3, MORE = 4 };
 
-/* [s] of CPU time: estimated, with which a study is tried; of a trial at most, of one of an uncommon kind; and what is enough to go
- * by: four times as much is no more than a trial may take */
+/* [s] of CPU time: estimate from which a trial is made; limit of a trial, and of an uncommonly slow one; and time of a trial that
+ * is long enough: four times as much stays within the limit */
 static const double TRIED_LEAST = 0.01, TRIAL_MOST = 0.1, UNCOMMON_MOST = 0.5, TRIAL_ENOUGH = 0.02;
 
-/* of what was counted, with which a trial that was stopped is uncommon */
+/* measured over estimated time from which a stopped trial counts as uncommonly slow */
 static const double UNCOMMON = 0.3;
 
-/* how much more than a few runs all take, in the mean, and than a trial that was stopped had taken until then */
+/* factor on the ratio of measured to estimated time, of a complete trial and of a stopped one; from the mean of many studies */
 static const double OTHERS = 1.25, STOPPED = 2;
 
-/* what nearly all tried studies take at most, over the estimate */
+/* CPU time that nearly all tried studies stay below, over the corrected estimate */
 static const double TRIED_HIGH = 2.5;
 
-/* Some of a study's runs. */
+/* A study reduced to some of its runs. */
 struct part {
 	struct pound_study study;
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
@@ -68,24 +68,24 @@ static void part_take(struct part *part)
 	                                           .order = design->order};
 }
 
-/* CPU time of its runs as it is counted [s]. */
+/* CPU time of a study's runs as counted, without trial [s]. */
 static double counted_of(const struct pound_study *study)
 {
 	const struct pound_study like = study_separation_like(study);
 	return cost_of_runs(&like);
 }
 
-/* Tries a study, and corrects what it is estimated to take.
+/* Runs a trial of a study and corrects its estimated CPU times.
  *
  * Given    study      valid
- *          cost       by cost_of, which the server allows
- *          unwanted   ends the trial when it is set; NULL: nothing does
- * Returns  cost       its CPU times
+ *          cost       from cost_of, within the limits of the server
+ *          unwanted   ends the trial when it is set; may be NULL
+ * Returns  cost       with corrected CPU times
  * Test     unit_estimates; soak_valid
  */
 void cost_try(struct cost *cost, const struct pound_study *study, const atomic_bool *unwanted)
 {
-	// trials of a convergence study are timed anyway
+	// a convergence study times its own trials
 	if (!cost_tried(cost) || study->kind == POUND_KIND_CONVERGENCE)
 		return;
 	const double all = counted_of(study);

@@ -1,4 +1,4 @@
-/* field_types.c - one row for each type of field, behind the functions that it names. */
+/* field_types.c - functions that read, store, write and describe each type of field, and the table of types. */
 #include "schema/study/field_types.h"
 #include "schema/study/near_name.h"
 
@@ -13,7 +13,7 @@
 
 /* ---- numbers ---- */
 
-/* Any type that has a number: reads it and stores it. */
+/* Reads and stores a value of any type that has a function `number`. */
 static void read_number(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	double value;
@@ -21,7 +21,7 @@ static void read_number(struct reader *r, const struct field *field, const cJSON
 		field_types[field->type].store(base + field->offset, value);
 }
 
-/* A number in the range of its field; misfit: what was expected of a value that is of another type, NULL if it is not. */
+/* A number in the range of its field; misfit: NULL, or the expected type if the value has another type. */
 static bool number_in_range(struct reader *r, const struct field *field, const cJSON *node,
                             const char *misfit, double *value)
 {
@@ -45,7 +45,7 @@ static bool count_number(struct reader *r, const struct field *field, const cJSO
 	return number_in_range(r, field, node, whole ? NULL : "a whole number", value);
 }
 
-/* 0: "auto" */
+/* "auto" is stored as 0. */
 static bool auto_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
 {
 	*value = 0.0;
@@ -149,7 +149,7 @@ static void auto_openapi(struct writer *w, const struct field *field)
 	writer_end(w);
 }
 
-/* ---- a number of every storey ---- */
+/* ---- numbers per storey ---- */
 
 static void each_expected(const struct field *field, char *text, size_t size)
 {
@@ -190,7 +190,7 @@ static void each_store(void *at, double value)
 	each->values[0] = value;
 }
 
-/* Numbers that are all the same are written as one: they mean the same. */
+/* Equal numbers are written as one number: the study is the same. */
 static void each_write(struct writer *w, const struct field *field, const char *name, const void *at)
 {
 	const struct pound_each *each = at;
@@ -225,9 +225,9 @@ static void each_openapi(struct writer *w, const struct field *field)
 	writer_end(w);
 }
 
-/* ---- names of a table's rows ---- */
+/* ---- choices: names of the rows of a table ---- */
 
-/* Names that others use for what is one of ours: the first is no choice where it is meant for the second. */
+/* Names used elsewhere for our choices: {other name, our name}; used only where the other name is not a choice itself. */
 static const char *const synonyms[][2] = {
     {"bilinear", "elastoplastic"},
     {"elastic", "linear"},
@@ -245,7 +245,7 @@ static const char *const synonyms[][2] = {
     {"sobol_indices", "sensitivity"},
 };
 
-/* The one of the names that `choice` gives which was probably meant; NULL: not known. */
+/* The choice that was probably meant by a name; NULL: not known. */
 static const char *nearest_choice(const char *(*choice)(int row), const char *name)
 {
 	const char *nearest = NULL;
@@ -275,7 +275,7 @@ static void choice_expected(const struct field *field, char *text, size_t size)
 		                      field->choice(row));
 }
 
-/* The row of a name, -1: none; a wrong one is noted with all names and the nearest. */
+/* The row of a choice, -1: invalid, and a problem with all names and the nearest one is added. */
 static bool choice_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
 {
 	char expected[1792]; // shorter than a problem's detail
@@ -383,7 +383,7 @@ static bool seed_of(const cJSON *node, uint64_t *seed)
 	return true;
 }
 
-/* A seed: a number that every reader of JSON keeps, or the digits of a larger one as text. */
+/* A seed: a number that every JSON reader represents exactly, or the digits of a larger one as a string. */
 static void seed_read(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	char expected[80];
@@ -493,7 +493,7 @@ const struct field_type_row field_types[] = {
 
 static_assert(sizeof field_types / sizeof field_types[0] == FIELD_N_TYPES, "a row for each type");
 
-/* Writes a number as a document has a value of the field.
+/* Writes a number as a document writes a value of the field.
  *
  * Test     unit_result_json: a_swept_law_stands_by_its_name
  */

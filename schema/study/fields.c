@@ -1,4 +1,4 @@
-/* fields.c - every member of a study document, in the order a person would write them. */
+/* fields.c - the table of all members of a study document, in the order in which people write them. */
 #include "schema/study/fields.h"
 
 #include <math.h>
@@ -503,7 +503,7 @@ bool fields_listed(const char *names, const char *name)
 	return false;
 }
 
-/* Whether a name is one of those that a row is for; NULL: any, or all. */
+/* Whether a list contains a name; a NULL list contains all names, and a NULL name is in every list. */
 static bool listed(const char *names, const char *name)
 {
 	return !names || !name || fields_listed(names, name);
@@ -522,7 +522,7 @@ bool fields_in_range(const struct field *field, double value)
 	return above && below && isfinite(value);
 }
 
-/* The valid range of a number, in words that fit behind "must be"; "a number" when any will do.
+/* The valid range of a number, as text that follows "must be"; "a number" if there are no limits.
  *
  * Test     unit_fields: every_field_says_what_it_takes
  */
@@ -547,7 +547,7 @@ void fields_span(const struct field *field, char *text, size_t size)
 		snprintf(text, size, "%.0f to %.0f", field->min, field->max);
 }
 
-/* What a field takes, in words that fit behind "must be".
+/* The valid values of a field, as text that follows "must be".
  *
  * Test     unit_fields: every_field_says_what_it_takes
  */
@@ -564,7 +564,7 @@ int fields_choice(const char *(*choice)(int row), const char *name)
 	return -1;
 }
 
-/* A path with * for each index on its way, and these in turn; false: it is no path of a field. */
+/* Replaces each index of a path by * and returns the indices; false: not a path of a field. */
 static bool path_pattern(const char *path, char *pattern, size_t size, int indices[2])
 {
 	int n = 0;
@@ -583,13 +583,13 @@ static bool path_pattern(const char *path, char *pattern, size_t size, int indic
 	return *path == '/' && !strchr(path, '*');
 }
 
-/* Whether an index is one of a list's elements at most. */
+/* Whether an index is below the largest number of elements of a list. */
 static bool within_list(const struct field *list, int index)
 {
 	return list && index >= 0 && index < list->max;
 }
 
-/* The list that holds the elements of a pattern, from its start to the last "/\*" or the first. */
+/* The list at the start of a pattern: the part before the first "/\*". */
 static const struct field *list_of(const char *pattern)
 {
 	char list[256];
@@ -598,11 +598,11 @@ static const struct field *list_of(const char *pattern)
 	return fields_find(list);
 }
 
-/* Finds what a JSON Pointer into "scene" names.
+/* Finds the field that a JSON Pointer into "scene" names.
  *
  * Given    path        -       -       "/oscillators/1/mass_kg", "/buildings/0/mass_kg/3", "/contacts/0/levels/1"
- * Returns  value       -       -       its row, NULL: there is none
- *          place       -       -       {1, -1}, {0, 3}, {0, 1}; {-1, -1} when the path has no index
+ * Returns  value       -       -       row of the field, NULL: none
+ *          place       -       -       {1, -1}, {0, 3}, {0, 1}; {-1, -1} if the path has no index
  *
  * Test     unit_fields: a_path_names_one_field_of_the_scene
  */
@@ -630,9 +630,9 @@ const struct field *fields_scene(const char *path, struct field_place *place)
 bool fields_nearest_path(const char *path, char *nearest, size_t size)
 {
 	int best = INT32_MAX - 1;
-	// an index counted from 1 is that of the last
+	// an index above 1 may count from 1: prefer the second element
 	const bool beyond = path[strcspn(path, "23456789")];
-	if (strncmp(path, "/scene/", 7) == 0) // the usual slip: the path is one into the scene already
+	if (strncmp(path, "/scene/", 7) == 0) // a common mistake: paths already start in the scene
 		path += strlen("/scene");
 	for (int i = 0; i < fields_count; i++) {
 		if (strncmp(fields[i].pattern, "/scene/", 7) != 0 || fields[i].fixed ||

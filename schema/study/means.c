@@ -1,4 +1,4 @@
-/* means.c - means of what varies in a study, over its distributions and sweeps. */
+/* means.c - means of varied fields over a study's distributions and sweeps. */
 #include "schema/study/means.h"
 
 #include <math.h>
@@ -6,9 +6,9 @@
 
 #include "schema/study/fields.h"
 
-enum { QUANTILES = 64 /* of a distribution, for a mean */ };
+enum { QUANTILES = 64 /* quantiles per mean of a distribution */ };
 
-/* Where a varied field is in the scene; SIZE_MAX: in its buildings or contacts. */
+/* Offset of a varied field in the scene; SIZE_MAX: in its buildings or contacts. */
 size_t means_offset(struct pound_field field)
 {
 	return field.part == POUND_PART_SCENE ? field.offset : SIZE_MAX;
@@ -38,7 +38,7 @@ double means_power(const struct pound_study *study, size_t offset, double power)
 	return pow(pound_scene_field(&study->scene, field), power);
 }
 
-/* Seconds of a ground motion, and its samples, in the mean. */
+/* Mean duration [s] and number of samples of a ground motion. */
 static void motion_mean(const struct pound_study *study, double *duration, double *samples)
 {
 	const struct pound_excitation *e = &study->scene.excitation;

@@ -4,10 +4,10 @@
 #include <ctype.h>
 #include <string.h>
 
-enum { NAME_MAX_LENGTH = 200 }; // longer names are nothing like ours
+enum { NAME_MAX_LENGTH = 200 }; // no name of a member or choice is longer
 
-/* Distance of two names: insertions, deletions, changes and swaps of neighbours, case aside; 1 when one starts the
- * other.
+/* Edit distance of two names, ignoring case: insertions, deletions, changes and swaps of neighboring letters; 1 if one name is a
+ * prefix of the other.
  *
  * Test     unit_fields: a_slip_of_the_pen_is_near_and_a_stranger_is_not
  */
@@ -17,7 +17,7 @@ int near_name_distance(const char *a, const char *b)
 	int least = n < m ? n : m;
 	if (least >= 3 && strncasecmp(a, b, (size_t)least) == 0)
 		return n == m ? 0 : 1;
-	int rows[3][NAME_MAX_LENGTH + 1]; // of the table D[i][j], i - 2, i - 1 and i
+	int rows[3][NAME_MAX_LENGTH + 1]; // rows i - 2, i - 1 and i of the table D[i][j]
 	int *before = rows[0], *above = rows[1], *now = rows[2];
 	for (int j = 0; j <= m; j++)
 		above[j] = j;

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-/* Distance of two names: letters to change, or 1 when one is the start of the other. */
+/* Distance of two names: letters to change, or 1 if one name is a prefix of the other. */
 int near_name_distance(const char *a, const char *b);
 /* Whether a name at this distance is probably a misspelling. */
 bool near_name(int distance, const char *name);

@@ -1,8 +1,8 @@
-/* What a study does, counted before any of it is run, as the engine shares it.
+/* operations.c - counts the operations of a study before it is run; work that the engine shares is counted once.
  *
- * How often bodies touch, yield and stay together is not known before: it is taken from their frequencies, masses, gap and the
- * peak ground acceleration, as it is in the mean of many scenes.  Two things are bounded, not predicted: a design that grows
- * counts as grown to its end, and a run that ends as chatter, or fails, as a whole one. */
+ * How often bodies touch, yield and stay in contact is not known before a run: it is estimated from their frequencies, masses and
+ * gap and the peak ground acceleration, fitted to the mean of many scenes.  Two counts are upper bounds: a growing design counts
+ * as grown to its end, and a run that ends as chatter, or fails, as a complete one. */
 #include "schema/study/operations.h"
 
 #include <assert.h>
@@ -20,7 +20,7 @@
 
 enum {
 	HISTORIES = 32,    /* times at which a convergence study compares displacements */
-	CHECK_EVERY = 100, /* items between two that are run again to check them, ... */
+	CHECK_EVERY = 100, /* one item in so many is run again as a check, ... */
 	CHECKS_LEAST = 8,  /* ... but at least so many runs */
 };
 
@@ -31,44 +31,44 @@ static const enum operation step_of[] = {MARCH, NEWMARK, CENTRAL, ADAPT};
 
 static_assert(sizeof step_of / sizeof step_of[0] == POUND_SOLVERS, "a row for each solver");
 
-/* radians of a sample that go by maps, of two linear bodies together without contact, and with more than which a run ends as chatter */
+/* radians per sample: most with maps, most with maps of two linear bodies together without contact, most before a run is chatter */
 static const double MAPPED = 2, PAIR_MAPPED = 1.5, TURNED_MOST = 5e5;
 
-/* The logarithm of a contact's frequency counts from here: square of it over that of the stiffer body. */
+/* Scale of (contact frequency / frequency of the stiffer body)^2 in SWING and SUSTAINED: log(1 + SWINGS ratio). */
 static const double SWINGS = 0.003;
 
-/* runs more whose time the lanes take that are not all filled to the end */
+/* runs to add for the time of lanes that are idle at the end */
 static const double TAIL = 2.7;
 
-/* how much finer checks are than the runs that they check */
+/* cost of a check over the cost of the run that it checks */
 static const double CHECKED = 2;
 
-/* How far bodies come towards each other, over the peak ground acceleration and the square of the softer one's frequency; and
- * with what gap they do not stay together any more. */
+/* Gaps, times the squared frequency of the softer body over the peak ground acceleration, at which the bodies are near each other,
+ * or in sustained contact, half as long as without a gap. */
 static const double NEAR = 0.4, RIDING = 0.01;
 
-/* [rad] of a step of a chain */
+/* radians per step of a row */
 static const double CHAIN_RADIANS = 4;
 
-/* floors of a chain that take as long as its step without them, and a part of the square of those that modes damp together */
+/* cost of a step without its floors, in floors; and factor of the squared number of floors that modal damping couples */
 static const double CHAIN_FLOORS = 8, MODAL_FLOORS = 0.12;
 
 static const double RESTITUTION_LEAST = 1e-3, DASHPOT_MOST = 300;
 
-/* [rad] of a step of a floor */
+/* radians per step of a floor */
 static const double FLOOR_RADIANS = 1.5;
 
-/* how many floors and spectra a run has: with pounding and without, and the contact's own part */
+/* floors and spectra of a run: with and without pounding, and a spectrum of only the contact force */
 static const struct {
 	int floors, spectra;
 } ridden[] = {[POUND_KIND_SENSITIVITY] = {1, 1}, [POUND_KIND_FLOOR_SPECTRUM] = {2, 3}};
 
 enum { RESAMPLES = 2000, MOMENTS = 10, MOMENTS_INPUT = 7, TILE_COLUMNS = 16 };
 
-/* Corrections that a search takes where it may, in the mean. */
+/* Mean number of corrections of a search for a yield displacement. */
 static const double SEARCH_MEAN = 6;
 
-/* What a part of the scene's members may be part of. */
+/* ---- what depends on a member of the scene: the ground motion, the response of a body, or a run ---- */
 static bool of_motion(size_t offset)
 {
 	const size_t first = offsetof(struct pound_scene, excitation);
@@ -80,7 +80,7 @@ static size_t law_offset(const struct pound_study *study, int body)
 	return (size_t)((const char *)pound_scene_law(&study->scene, body) - (const char *)&study->scene);
 }
 
-/* Whether a response without pounding depends on a member: all of its body but the mass. */
+/* Whether a response without pounding depends on a member: on all members of its body except the mass. */
 static bool of_body(const struct pound_study *study, int body, size_t offset)
 {
 	const size_t first = offsetof(struct pound_scene, oscillators) +
@@ -91,7 +91,7 @@ static bool of_body(const struct pound_study *study, int body, size_t offset)
 	        offset != first + offsetof(struct pound_oscillator, mass));
 }
 
-/* Whether a response of a building of a row without pounding does. */
+/* The same for a building of a row. */
 static bool of_building(int building, struct pound_field field)
 {
 	const size_t at = means_offset(field), law = offsetof(struct pound_scene, law);
@@ -102,7 +102,7 @@ static bool of_building(int building, struct pound_field field)
 
 enum { ALL = -2, MOTION = -1 /* or a body, or a building of a row */ };
 
-/* Whether a part of what an item has depends on a member that varies. */
+/* Whether the ground motion, a body's response or the run of an item (`what`) depends on a varied member. */
 static bool depends(const struct pound_study *study, int what, struct pound_field field)
 {
 	return what == ALL                ? true
@@ -111,7 +111,7 @@ static bool depends(const struct pound_study *study, int what, struct pound_fiel
 	                                  : of_body(study, what, means_offset(field));
 }
 
-/* How many of an item's ground motions, or responses of a body, differ from each other: it has samples in all cells. */
+/* Number of different ground motions, responses of a body or runs of an item, over its samples in all cells. */
 static double distinct(const struct pound_study *study, int what)
 {
 	const int samples = study->kind == POUND_KIND_SENSITIVITY ? pound_design_samples(study) : 1;
@@ -122,8 +122,8 @@ static double distinct(const struct pound_study *study, int what)
 	for (int s = 0; s < study->n_sweeps; s++)
 		cells *= depends(study, what, study->sweeps[s].field) ? study->sweeps[s].n_values : 1;
 	const bool common = study->design.common_signals || !pound_excitation_random(&study->scene.excitation);
-	// A, B, and A with each column of B that matters, which is B where there is one alone; with interactions B with those of A, too,
-	// which are the same where there are two
+	// A, B, and A with each column of B that matters (with one such column that is B); with interactions also B with columns of A
+	// (with two such columns they are the same)
 	const bool second = samples > 2 + study->n_inputs;
 	const int columns = n_inputs < 2 ? 0 : second && n_inputs > 2 ? 2 * n_inputs : n_inputs;
 	const int some = n_inputs ? (int)fmin(2 + columns, samples) : 1;
@@ -141,16 +141,16 @@ static bool varies(const struct pound_study *study, size_t offset)
 	return false;
 }
 
-/* A building of a chain in the mean; one of two oscillators is of one storey. */
+/* A building of a row, with mean values; an oscillator counts as a building of one storey. */
 struct storeys {
 	int n;       /* 0: a wall */
-	double mass; /* of a floor, of whatever unit */
+	double mass; /* of a floor, in any unit */
 	double low;  /* [rad/s] of the first mode */
-	double high; /* ... of the last one, with what dashpots add to it */
-	double wide; /* floors that a step takes as long for: more than n where the rates of all damp every one */
+	double high; /* ... of the last mode, dashpots included */
+	double wide; /* cost of a step in floors: more than n if modal damping couples all floors */
 };
 
-/* How fast two neighbors may come back to each other: by the faster, and by the lighter one. */
+/* Rate at which two neighbors may touch again: mean of the higher frequency and of the mean weighted toward the lighter body. */
 static double touching(const struct storeys pair[static 2])
 {
 	const double ratio = pair[1].n ? pair[1].mass / pair[0].mass : 1;
@@ -164,15 +164,14 @@ static double masses(const struct storeys pair[static 2])
 	return pair[1].n ? fmax(pair[0].mass / pair[1].mass, pair[1].mass / pair[0].mass) : 1;
 }
 
-/* What is known of the bodies in the mean. */
+/* Mean values of two oscillators. */
 struct bodies {
 	double hz[POUND_OSCILLATORS];      /* 0: a wall */
-	double marches[POUND_OSCILLATORS]; /* of one that may yield, for its demand, 0: of one that does not */
-	double near;                       /* part of the time in which they may touch */
-	double riding;                     /* ... and in which they may stay together */
-	double ratio;                      /* largest square of the contact's frequency over the faster one's */
-	double
-	    touching; /* [Hz] how fast they may come back to each other: by the faster, and by the lighter one */
+	double marches[POUND_OSCILLATORS]; /* runs with yielding: corrections and the last; 0: linear */
+	double near;                       /* fraction of the time in which they may touch */
+	double riding;                     /* ... and in which contact may be sustained */
+	double ratio;    /* squared contact frequency over the squared frequency of the faster body */
+	double touching; /* [Hz] rate at which they may touch again */
 };
 
 static struct bodies bodies_of(const struct pound_study *study)
@@ -200,7 +199,7 @@ static struct bodies bodies_of(const struct pound_study *study)
 	return b;
 }
 
-/* Radians of a sample that oscillators turn by, beyond those that go by maps. */
+/* Radians per sample of the oscillators above the limit for maps. */
 static double turned(const struct bodies *b, double time_step)
 {
 	double sum = 0;
@@ -209,7 +208,7 @@ static double turned(const struct bodies *b, double time_step)
 	return fmin(sum, TURNED_MOST);
 }
 
-/* Adds what so many items take by the event-driven solver before and without pounding. */
+/* Adds ground motions and responses without pounding of so many items, by the event-driven solver. */
 static void count_free(const struct pound_study *study, const struct bodies *b, double items,
                        struct counts *c)
 {
@@ -227,7 +226,7 @@ static void count_free(const struct pound_study *study, const struct bodies *b, 
 	}
 }
 
-/* Adds what so many items take by the event-driven solver. */
+/* Adds all work of so many items by the event-driven solver. */
 static void count_event(const struct pound_study *study, double items, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
@@ -245,7 +244,7 @@ static void count_event(const struct pound_study *study, double items, struct co
 	    (pounded > 0 ? pounded : items) * samples * turned(&b, MEAN(study, excitation.time_step, 1));
 }
 
-/* The same by a solver of a fixed step, or the adaptive one, which run one thing at a time. */
+/* The same by a fixed-step solver or the adaptive one, which run one motion at a time, without lanes. */
 static void count_steps(const struct pound_study *study, const struct pound_solver *solver, double items,
                         struct counts *c)
 {
@@ -272,7 +271,7 @@ static void count_steps(const struct pound_study *study, const struct pound_solv
 	}
 }
 
-/* [rad/s] at which a contact's dashpot acts, in the mean. */
+/* Mean damping rate of a contact's dashpot [rad/s]. */
 static double dashpot_rate(const struct pound_study *study, const struct storeys pair[static 2])
 {
 	const struct pound_contact_place place = {1, 1, 1};
@@ -293,14 +292,14 @@ static int links_of(const struct pound_study *study, int building, const struct 
 	return study->scene.n_contacts ? links : pair[1].n == 0 || pair[0].n < pair[1].n ? pair[0].n : pair[1].n;
 }
 
-/* of a chain with pounding */
+/* runs of a row with pounding */
 struct marches {
-	double n, steps; /* of each */
-	double wide;     /* of the chain, in floors */
-	double near;     /* radians of all in which neighbors are near each other */
+	double n, steps; /* number; steps of each */
+	double wide;     /* cost of a step, in floors */
+	double near;     /* radians of all runs in which neighbors are near each other */
 };
 
-/* Adds what a building and its right neighbor take where they meet. */
+/* Adds the work near and in contact of a building and its right neighbor. */
 static void count_meetings(const struct pound_study *study, int building, const struct storeys pair[static 2],
                            struct marches *m, struct counts *c)
 {
@@ -327,13 +326,13 @@ static void count_meetings(const struct pound_study *study, int building, const 
 	c->of[STICK] += riding * radians * own * -log(restitution);
 }
 
-/* Steps of a march of so many floors. */
+/* Steps of a run whose highest frequency is `high` [rad/s]. */
 static double chain_steps(const struct pound_study *study, double high)
 {
 	return means_samples(study) + means_duration(study) * high / CHAIN_RADIANS;
 }
 
-/* Adds where the neighbors of a chain meet. */
+/* Adds the work near and in contact of all neighbors of a row. */
 static struct marches count_chain(const struct pound_study *study, double pounded, const struct storeys *all,
                                   int n, struct counts *c)
 {
@@ -371,7 +370,7 @@ static void buildings_of(const struct pound_study *study, struct storeys all[POU
 	}
 }
 
-/* A row of buildings by a solver of a fixed step, or the adaptive one. */
+/* A row of buildings by a fixed-step solver or the adaptive one. */
 static void count_row_steps(const struct pound_study *study, const struct pound_solver *solver, double items,
                             struct counts *c)
 {
@@ -426,7 +425,7 @@ static struct marches count_row(const struct pound_study *study, double items, s
 	return m;
 }
 
-/* The same of two oscillators whose contact the march of pairs does not have. */
+/* The same for two oscillators with a contact that the solver for pairs lacks: they run as a row of two buildings. */
 static struct marches count_pair_chain(const struct pound_study *study, double items, struct counts *c)
 {
 	struct storeys all[POUND_OSCILLATORS];
@@ -449,7 +448,7 @@ bool operations_chained(const struct pound_study *study, const struct pound_solv
 	        pound_contact_force(study->scene.contact.model) != POUND_FORCE_LINEAR);
 }
 
-/* Adds runs of both oscillators together without contact, where an output reads them. */
+/* Adds runs of both oscillators together without contact, if an output needs them. */
 static void count_free_pairs(const struct pound_study *study, double items, struct counts *c)
 {
 	const struct bodies b = bodies_of(study);
@@ -464,7 +463,7 @@ static void count_free_pairs(const struct pound_study *study, double items, stru
 		c->of[PAIR_MAPS] += samples;
 }
 
-/* Adds what outputs take that a pair gives as a chain, run once more. */
+/* Adds second runs of two oscillators, as a row, for outputs that only the solver for rows computes. */
 static struct marches count_again(const struct pound_study *study, double items, struct counts *c)
 {
 	const unsigned asked = pound_outputs_asked(study);
@@ -473,7 +472,7 @@ static struct marches count_again(const struct pound_study *study, double items,
 	return count_pair_chain(study, items * (asked & POUND_ASKS_FREE_FLOORS ? 2 : 1), c);
 }
 
-/* Returns the marches of chains, if there are any. */
+/* Adds all runs; returns those by the solver for rows, if any. */
 static struct marches count_runs(const struct pound_study *study, const struct pound_solver *solver,
                                  double items, struct counts *c)
 {
@@ -490,7 +489,7 @@ static struct marches count_runs(const struct pound_study *study, const struct p
 	return (struct marches){.n = 0};
 }
 
-/* Adds what spectra of floors take; those of chains have their marches. */
+/* Adds floor spectra; m: runs by the solver for rows, none if m->steps is 0. */
 static void count_floors(const struct pound_study *study, double runs, const struct marches *m,
                          struct counts *c)
 {
@@ -521,17 +520,17 @@ static void count_reductions(const struct pound_study *study, struct counts *c)
 	const double outputs = (double)study_cells(study) * study->n_outputs,
 	             rows = pound_design_rows_most(study);
 	const int tiles = (MOMENTS + MOMENTS_INPUT * study->n_inputs + TILE_COLUMNS - 1) / TILE_COLUMNS;
-	// where rows come in groups, these are left out one by one instead
+	// no bootstrap for rows in groups: a jackknife leaves out one group at a time; a named estimator is estimated twice, with and
+	// without noise correction
 	const bool grouped =
 	    study->design.until.half_width > 0 || pound_design_quasi_random(study->design.method);
-	const double draws =
-	    grouped ? 0 : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1); // the one named twice
+	const double draws = grouped ? 0 : outputs * rows * RESAMPLES * (study->design.estimator ? 3 : 1);
 	c->of[DRAW] += draws;
 	c->of[TILE] += draws * tiles;
 	c->of[FIT] += outputs * rows * pound_design_samples(study);
 }
 
-/* Items and, counted as such, those that are run again to check them and what lanes leave unfilled. */
+/* Items, with checks and idle lanes counted as further items. */
 static double items_of(const struct pound_study *study, bool chained)
 {
 	const bool sampled = study->kind == POUND_KIND_SENSITIVITY;
@@ -544,7 +543,7 @@ static double items_of(const struct pound_study *study, bool chained)
 	return items + CHECKED * checks + (chained ? 0 : TAIL / asks);
 }
 
-/* Counts what a study does.
+/* Counts the operations of a study.
  *
  * Test     unit_cost: what_is_asked_twice_costs_twice
  */
@@ -555,10 +554,10 @@ void operations_count(const struct pound_study *study, struct counts *c)
 	struct marches m = {.n = 0};
 	c->of[STUDY] = 1;
 	count_free_pairs(study, alone, c);
-	// what is run again for histories: of pairs as it was fitted, of rows up to that time
+	// runs repeated for histories: half of their number for pairs (fitted), for rows in proportion to the time compared
 	const double seconds = means_duration(study), history = fmin(study->convergence.history, seconds);
 	const double repeated = HISTORIES / 2 * (study->scene.n_buildings ? history / seconds : 1);
-	// the floors of chains that meet are followed by marches of their own
+	// floors of rows with contact are followed by a second run
 	const bool followed =
 	    study->spectrum.n && study->scene.contact.present && operations_chained(study, &study->solver);
 	if (study->kind != POUND_KIND_CONVERGENCE)
@@ -566,12 +565,12 @@ void operations_count(const struct pound_study *study, struct counts *c)
 	else
 		for (int j = 0; j < pound_convergence_trials(study); j++) {
 			const struct pound_solver solver = pound_convergence_solver(study, j);
-			// twice, to be timed, and for each point of a history up to that
+			// twice, for the timing, and once more for each point of a history, up to that point
 			count_runs(study, &solver, items * (2 + repeated), c);
 			c->of[CLOCK]++;
 		}
 	const struct marches again = count_again(study, alone, c), *lost = study->scene.n_buildings ? &m : &again;
-	// no whole samples are passed at once
+	// energies need every step: no whole sample interval is passed at once
 	if (pound_outputs_asked(study) & POUND_ASKS_ENERGIES)
 		c->of[YIELD_STEP] += lost->n * lost->steps * lost->wide;
 	if (study->spectrum.n)

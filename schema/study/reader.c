@@ -1,4 +1,4 @@
-/* reader.c - where in a study document the reader is, and one value read there. */
+/* reader.c - the reader's position in a study document, and how single values and lists are read. */
 #include "schema/study/reader.h"
 
 #include <math.h>
@@ -10,9 +10,9 @@
 
 enum { SHOWN_SIZE = 80 };
 
-/* Goes into a member: its name, escaped as RFC 6901 says, becomes a part of the pointer.
+/* Enters a member: appends its name, escaped as in RFC 6901, to the pointer.
  *
- * Returns  value     -         bytes   length before, for reader_leave
+ * Returns  value     -         bytes   previous length of the pointer, for reader_leave
  *
  * Test     unit_study_cases
  */
@@ -43,7 +43,7 @@ void reader_leave(struct reader *r, size_t length)
 	r->pointer[length] = 0;
 }
 
-/* What came, for a sentence: a number, a short text in quotes without control characters, or what else it is. */
+/* A value as text for a message: a number, a shortened string in quotes without control characters, or its type. */
 static void shown(const cJSON *node, char text[SHOWN_SIZE])
 {
 	if (cJSON_IsNumber(node)) {
@@ -65,7 +65,7 @@ static void shown(const cJSON *node, char text[SHOWN_SIZE])
 	}
 }
 
-/* Notes what was expected here and what came instead.
+/* Adds a problem with the expected and the given value.
  *
  * Test     unit_study_cases
  */
@@ -76,7 +76,7 @@ void reader_mistyped(struct reader *r, const char *expected, const cJSON *node)
 	problems_add(r->problems, r->pointer, "must be %s, got %s", expected, got);
 }
 
-/* The same for a field, by its type and range; NULL: the whole document. */
+/* The same, with the type and range of a field as the expected value; NULL: the whole document. */
 void reader_mistyped_field(struct reader *r, const struct field *field, const cJSON *node)
 {
 	char expected[256] = "an object";
@@ -85,7 +85,7 @@ void reader_mistyped_field(struct reader *r, const struct field *field, const cJ
 	reader_mistyped(r, expected, node);
 }
 
-/* The same, with what was probably meant. */
+/* The same, with the choice that was probably meant. */
 void reader_misspelt(struct reader *r, const char *expected, const cJSON *node, const char *nearest)
 {
 	char got[SHOWN_SIZE];
@@ -93,7 +93,7 @@ void reader_misspelt(struct reader *r, const char *expected, const cJSON *node, 
 	problems_add(r->problems, r->pointer, "must be %s, got %s, did you mean \"%s\"?", expected, got, nearest);
 }
 
-/* Characters of a text, -1 when it holds a control character (C0, DEL, C1). */
+/* Number of characters of a string, -1 if it contains a control character (C0, DEL, C1). */
 static int characters(const char *text)
 {
 	int n = 0;
@@ -105,7 +105,7 @@ static int characters(const char *text)
 	return n;
 }
 
-/* Reads a text into the study's own memory.
+/* Reads a string into the study's own memory.
  *
  * Test     unit_study_cases
  */
@@ -126,7 +126,7 @@ void reader_text(struct reader *r, const struct field *field, const cJSON *node,
 	}
 }
 
-/* The number of elements to read, 0 when it is no list or too long; any wrong number is a problem. */
+/* The number of elements to read, 0 if it is no list or too long; adds a problem for a wrong number of elements. */
 int reader_elements(struct reader *r, const struct field *field, const cJSON *node)
 {
 	if (!cJSON_IsArray(node)) {
@@ -141,7 +141,7 @@ int reader_elements(struct reader *r, const struct field *field, const cJSON *no
 	return n <= field->max ? n : 0;
 }
 
-/* Reads every element of a list, each inside its own pointer. */
+/* Reads every element of a list, with r->pointer at the element. */
 int reader_each(struct reader *r, const struct field *field, const cJSON *node,
                 void (*read)(struct reader *r, const cJSON *element, int i))
 {
@@ -157,7 +157,7 @@ int reader_each(struct reader *r, const struct field *field, const cJSON *node,
 
 /* Reads a list of numbers.
  *
- * Returns  numbers   (value)   -       in the study's own memory; NAN: that one is none, which is noted
+ * Returns  numbers   (value)   -       in the study's own memory; NAN: invalid, and a problem is added
  *
  * Test     unit_study_cases
  */

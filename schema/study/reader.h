@@ -12,50 +12,50 @@ struct reader {
 	struct problems *problems;
 	struct pound_study *study;
 	const char *kind, *excitation, *solver; /* names; NULL: not known */
-	const cJSON *sweeps;                    /* of the document; NULL: none */
-	double *number;                         /* next free place for a sample or a sweep value */
-	char *text;                             /* next free place for a text */
-	const struct study_files *files;        /* of recorded ground motions; NULL: cannot be read */
-	struct suite_source *suite;             /* of the records, in the study's block  (suite_room) */
-	bool designed;                          /* the document is read for its design alone */
+	const cJSON *sweeps;                    /* array in the document; NULL: none */
+	double *number;                         /* next free element for samples and sweep values */
+	char *text;                             /* next free byte for strings */
+	const struct study_files *files;        /* reads files of ground motions; NULL: files cannot be read */
+	struct suite_source *suite;             /* sources of the records, in the study's block  (suite_room) */
+	bool designed;                          /* only the design of the document is read */
 	int storeys;                            /* of the current building; 0: not known */
-	const struct field *swept; /* by the current sweep; NULL: its path names no field that varies */
-	char pointer[512];         /* of the current member */
+	const struct field *swept; /* by the current sweep; NULL: its path names no field that may vary */
+	char pointer[512];         /* JSON Pointer of the current member */
 };
 
-/* Into a member or an element and out again: enter gives what leave takes. */
+/* Move into a member or an element and back: reader_leave takes the value that the enter function returned. */
 size_t reader_enter(struct reader *reader, const char *name);
 size_t reader_enter_element(struct reader *reader, int i);
 void reader_leave(struct reader *reader, size_t length);
 
-/* Notes that something else was expected here. */
+/* Add the problem that something else was expected here. */
 void reader_mistyped(struct reader *reader, const char *expected, const cJSON *node);
 void reader_mistyped_field(struct reader *reader, const struct field *field, const cJSON *node);
 void reader_misspelt(struct reader *reader, const char *expected, const cJSON *node, const char *nearest);
 
-/* A text; other values: field_types.c. */
+/* Reads a string; other values: field_types.c. */
 void reader_text(struct reader *reader, const struct field *field, const cJSON *node, const char **at);
 
-/* Lists.  The elements to read: 0 when it is no list or too long; any wrong number is noted. */
+/* Lists.  Number of elements to read: 0 if it is no list or too long; adds a problem for a wrong number of elements. */
 int reader_elements(struct reader *reader, const struct field *field, const cJSON *node);
-/* Reads each of them by a function; their number. */
+/* Reads each element with a function; returns their number. */
 int reader_each(struct reader *reader, const struct field *field, const cJSON *node,
                 void (*read)(struct reader *reader, const cJSON *element, int i));
-/* Reads numbers, each as `element` says, into the study's own memory, NAN for one that is wrong; their number. */
+/* Reads numbers by the row `element` into the study's own memory, NAN if one is invalid; returns their number. */
 int reader_numbers(struct reader *reader, const struct field *field, const struct field *element,
                    const cJSON *node, const double **numbers);
-/* Reports every number that occurs before, too, as that of a `what`. */
+/* Adds a problem for every number that repeats an earlier one; `what` names the numbers, such as "frequency". */
 void reader_distinct(struct reader *reader, const double *numbers, int n, const char *what);
 
 /* Objects: study_json.c. */
-bool reader_seen(const cJSON *object, const cJSON *member); /* an earlier member has its name */
+bool reader_seen(const cJSON *object, const cJSON *member); /* an earlier member has the same name */
 void reader_require(struct reader *reader, const cJSON *node, const char *pattern);
 bool reader_object(struct reader *reader, const char *pattern, const cJSON *node, char *base);
 void reader_value(struct reader *reader, const struct field *field, const cJSON *node, char *base);
-/* Fills an element of a list with what its absent members mean. */
+/* Fills an element of a list with the defaults of its members. */
 void reader_defaults(const char *pattern, char *base);
 
-/* Members of what is a rigid wall, each refused; false: it is none. */
+/* Refuses the other members of a rigid wall; false: the body is no rigid wall. */
 bool reader_wall(struct reader *reader, const char *pattern, const cJSON *node, const char *refused);
 
 /* Rows of buildings: study_buildings.c. */

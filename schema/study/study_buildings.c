@@ -1,8 +1,8 @@
-/* study_buildings.c - rows of buildings: their members read, and what these mean together.
+/* study_buildings.c - rows of buildings: reads their members and checks them against each other.
  *
- * 1. A building is read when its number of storeys is known, which arrays must have as many elements as.
- * 2. A contact follows the contact of the scene in all that it does not say itself.
- * 3. What storeys there are in every cell decides which levels, places and paths there are. */
+ * 1. The number of storeys of a building is looked up first: its arrays must have as many elements.
+ * 2. A contact inherits its absent members from the contact of the scene.
+ * 3. The storeys that exist in every cell decide which levels, places and paths are valid. */
 #include "schema/study/study_buildings.h"
 #include "schema/study/study_check.h"
 
@@ -21,7 +21,7 @@ enum { POINTER_SIZE = 80 };
 
 static const char BUILDING[] = "/scene/buildings/*", CONTACT[] = "/scene/contacts/*";
 
-/* Notes a member that another one makes needless. */
+/* Refuses a member, if it is given, that another member makes unused. */
 static void refuse(struct reader *r, const cJSON *object, const char *name, const char *why)
 {
 	if (!cJSON_GetObjectItemCaseSensitive(object, name))
@@ -62,14 +62,14 @@ static void read_building(struct reader *r, const cJSON *node, int i)
 		refuse(r, node, "damping_modes", "is only used with damping \"rayleigh\"");
 }
 
-/* Reads a row; offsets are those of its current element.
+/* Reads the buildings of a row; offsets in fields.c count from the current building.
  *
  * Test     unit_study_cases
  */
 void reader_buildings(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
-	r->study->scene.n_buildings = cJSON_GetArraySize(node); // a wall is the last one
+	r->study->scene.n_buildings = cJSON_GetArraySize(node); // read_building needs it
 	r->study->scene.n_buildings = reader_each(r, field, node, read_building);
 }
 
@@ -81,7 +81,7 @@ void reader_building_law(struct reader *r, const struct field *field, const cJSO
 		refuse(r, node, "target_demand", "is not used when yield_displacement_m is given");
 }
 
-/* Reads the elements of a short list as its row says; false: one is wrong. */
+/* Reads a list of two numbers by its row of fields.c; false: one is invalid. */
 static bool read_pair(struct reader *r, const struct field *field, const cJSON *node, double pair[2])
 {
 	const int before = r->problems->n;
@@ -138,7 +138,7 @@ static void read_row_contact(struct reader *r, const cJSON *node, int i)
 		    cJSON_GetObjectItemCaseSensitive(node, fields_name(field)))
 			memset(contact->own + (field->offset - start), 1, size_of(field));
 	}
-	// a ratio of its own is instead of a stiffness that the scene's contact has
+	// its own stiffness ratio replaces an inherited stiffness
 	if (cJSON_GetObjectItemCaseSensitive(node, "stiffness_ratio") &&
 	    !cJSON_GetObjectItemCaseSensitive(node, "stiffness_n_m")) {
 		contact->contact.stiffness = 0;
@@ -147,7 +147,7 @@ static void read_row_contact(struct reader *r, const cJSON *node, int i)
 	}
 }
 
-/* Reads the contacts of a row, each from the contact of the scene on, and looks whether bodies are given twice.
+/* Reads the contacts of a row, each as a copy of the scene's contact, and refuses buildings beside oscillators.
  *
  * Test     unit_row_results: what_a_sweep_varies_is_what_a_document_says
  */
@@ -221,9 +221,9 @@ int study_storeys_most(const struct pound_study *study, int building)
 	return storeys_extreme(study, building, -1);
 }
 
-/* ---- what must hold ---- */
+/* ---- checks ---- */
 
-/* Members of every storey whose number of storeys varies. */
+/* A building with a varied number of storeys cannot have arrays. */
 static void check_arrays(const struct pound_study *study, int b, struct problems *problems)
 {
 	static const struct {
@@ -245,7 +245,7 @@ static void check_arrays(const struct pound_study *study, int b, struct problems
 	}
 }
 
-/* Whether a level is one of a building in every cell; a swept level in its own cells is looked at by value. */
+/* Checks that a level is in a building in every cell; check_levels calls this for each swept value. */
 static void check_level(const struct pound_study *study, int c, int side, double level,
                         struct problems *problems)
 {
@@ -287,7 +287,7 @@ static void check_levels(const struct pound_study *study, int c, struct problems
 	}
 }
 
-/* What the model of a contact of its own needs: a solver that can integrate it, and what its members must be. */
+/* Checks the model of one contact: a solver that can integrate it, restitution and yield overlap. */
 static void check_model(const struct pound_study *study, int c, struct problems *problems)
 {
 	struct pound_row_contact contact;
@@ -393,7 +393,7 @@ static void check_places(const struct pound_study *study, struct problems *probl
 		check_place(study, &study->spectrum.place, "/spectrum/place", problems);
 }
 
-/* What solvers compute of rows; the rest is refused, as nothing is computed by another one than the study's. */
+/* Refuses outputs of rows that the study's solver cannot compute; solvers are never replaced silently. */
 static void check_solvers(const struct pound_study *study, struct problems *problems)
 {
 	for (int row = 0; row < POUND_SOLVERS && !problems_at(problems, "/solver"); row++)
@@ -428,7 +428,7 @@ static void check_gaps(const struct pound_study *study, struct problems *problem
 		             study_kind_name(study->kind), POUND_GAPS_OF_ROW_MAX, pound_row_contacts(&study->scene));
 }
 
-/* Every place has outputs of its own; those of a study without places are all storeys of the left building. */
+/* Every place has its own outputs; the default places are all storeys of the left building. */
 static void check_outputs_number(const struct pound_study *study, struct problems *problems)
 {
 	const int places = study->scene.n_places ? study->scene.n_places : study_storeys_least(study, 0);
@@ -444,10 +444,10 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 		                POUND_OUTPUTS_MAX);
 }
 
-/* Checks what the members of a row mean together, in every cell.
+/* Checks the members of a row against each other, in every cell.
  *
- * Given    study      -     read, with problems or without
- * Returns  problems   -     more of them
+ * Given    study      -     read, possibly with problems
+ * Returns  problems   -     further problems are added
  *
  * Test     unit_study_cases
  */
@@ -517,7 +517,7 @@ static const char *building_idle(const struct pound_study *study, const struct f
 	return NULL;
 }
 
-/* Whether every contact has a member of the scene's contact for itself. */
+/* Whether every contact of the row gives this member itself, so that the value of the scene's contact is unused. */
 static bool all_own(const struct pound_study *study, const struct field *field)
 {
 	const size_t at = field->offset - offsetof(struct pound_study, scene.contact);
@@ -527,9 +527,9 @@ static bool all_own(const struct pound_study *study, const struct field *field)
 	return study->scene.n_contacts > 0 && c == study->scene.n_contacts;
 }
 
-/* Why varying a field would change nothing, in a scene that is a row or by a path into one.
+/* Why varying a field would change nothing, for scenes with buildings and for paths into buildings.
  *
- * Returns  value   in words; NULL: it may vary, or no row has to do with it
+ * Returns  value   the reason; NULL: it may vary, or neither scene nor path has buildings
  *
  * Test     unit_study_cases
  */
@@ -550,7 +550,7 @@ const char *study_row_idle(const struct pound_study *study, const struct field *
 		return "there is no such contact in this scene";
 	if (fields_within(field, of_contact, 1) && all_own(study, field))
 		return "has no effect: every contact has its own";
-	bool follows = false; // a building the scene's law
+	bool follows = false; // whether a building has the scene's law
 	for (int b = 0; b < study->scene.n_buildings; b++)
 		follows |= !study->scene.buildings[b].has_law && !study->scene.buildings[b].rigid_wall;
 	if (fields_within(field, of_law, 1) && !follows)
@@ -560,7 +560,7 @@ const char *study_row_idle(const struct pound_study *study, const struct field *
 
 /* ---- outputs ---- */
 
-/* How many outputs there are in place of one. */
+/* Number of outputs that replace one: one per place or contact. */
 static int copies_of(const struct pound_study *study, int row)
 {
 	return pound_output_has_places(row, &study->scene)     ? study->scene.n_places
@@ -568,7 +568,7 @@ static int copies_of(const struct pound_study *study, int row)
 	                                                       : 1;
 }
 
-/* Puts an output in place of each place's and contact's, and all storeys of the left building in place of none.
+/* Replaces outputs of places and contacts by one per place or contact; default places: all storeys of the left building.
  *
  * Test     unit_row_results: places_are_outputs
  */

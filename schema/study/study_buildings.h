@@ -1,4 +1,4 @@
-/* study_buildings.h - rows of buildings in a study: what their members mean together. */
+/* study_buildings.h - rows of buildings in a study: checks between their members. */
 #ifndef STUDY_BUILDINGS_H
 #define STUDY_BUILDINGS_H
 
@@ -8,15 +8,15 @@
 
 void study_buildings_check(const struct pound_study *study, struct problems *problems);
 
-/* Storeys of a building in the cell that has the fewest of them, or the most. */
+/* Fewest and most storeys of a building in any cell. */
 int study_storeys_least(const struct pound_study *study, int building);
 int study_storeys_most(const struct pound_study *study, int building);
 
-/* Why varying a field of a row would change nothing, NULL when it may. */
+/* Why varying a field of a row would change nothing; NULL: it may vary. */
 const char *study_row_idle(const struct pound_study *study, const struct field *field,
                            struct field_place place);
 
-/* Puts an output in place of each place's. */
+/* Replaces outputs of floors and contacts by one output per place or contact. */
 void study_places_lay(struct pound_study *study);
 
 #endif

@@ -1,6 +1,6 @@
-/* study_check.c - what the members of a study mean together: paths, reaches of varied fields, outputs, solvers.
+/* study_check.c - checks between the members of a study: paths, ranges of varied fields, outputs, solvers.
  *
- * A check is left out when a member it depends on is wrong itself: one mistake, one problem. */
+ * A check is skipped if a member it depends on is invalid itself: one mistake gives one problem. */
 #include "schema/study/study_check.h"
 
 #include <math.h>
@@ -21,11 +21,11 @@ enum { POINTER_SIZE = 64 };
 
 struct pound_field study_check_field(const char *path)
 {
-	// the lists that a scene has; offsets in fields.c are those of the first element
+	// the lists of a scene; offsets in fields.c belong to the first element
 	static const struct {
 		const char *pattern;
 		enum pound_part part;
-		size_t start, size; /* where offsets count from, of an element [bytes] */
+		size_t start, size; /* origin of offsets, size of an element [bytes] */
 	} lists[] = {
 	    {"/scene/oscillators/", POUND_PART_SCENE, offsetof(struct pound_study, scene),
 	     sizeof(struct pound_oscillator)},
@@ -76,16 +76,16 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
 	         problems_at(problems, "/scene/contact") || problems_at(problems, "/scene/buildings") ||
 	         problems_at(problems, "/scene/contacts"))
-		return; // whether it has an effect is seen by these
+		return; // these members decide whether it has an effect
 	else if (study_idle(study, field, place))
 		problems_add(problems, pointer, "%s", study_idle(study, field, place));
 }
 
-/* Inputs and sweeps in one row, as they are both named by paths. */
+/* Inputs and sweeps in one list, as both have paths. */
 struct varied {
 	const char *list; /* "inputs" or "sweep" */
 	int index;
-	const char *path; /* NULL: not read */
+	const char *path; /* NULL: invalid */
 	const char *name; /* of an input */
 };
 
@@ -128,9 +128,9 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* Names of inputs, ratios and groups are columns and rows of results: each must be unique.
+/* Names of inputs, ratios and groups name columns and rows of results: each must be unique.
  *
- * Given    list, n   of the name: "inputs", "ratios" or "groups", and its index there
+ * Given    list, n   where the name is: "inputs", "ratios" or "groups", and the index there
  */
 static void check_name(const struct pound_study *study, const char *list, int n, const char *name,
                        struct problems *problems)
@@ -141,7 +141,7 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 	snprintf(pointer, sizeof pointer, "/%s/%d/name", list, n);
 	for (int k = 0; name && k < (group || ratio ? study->n_inputs : n); k++) {
 		const struct pound_input *other = &study->inputs[k];
-		// two absent names are alike where two paths are, which is reported by itself
+		// two absent names are equal if their paths are, which check_paths reports
 		if (other->name && strcmp(other->name, name) == 0 && !(is_path && other->name == other->path)) {
 			problems_add(problems, pointer, "is already the name of /inputs/%d", k);
 			return;
@@ -159,7 +159,7 @@ static void check_name(const struct pound_study *study, const char *list, int n,
 		}
 }
 
-/* The columns of the samples must be different, too: no input has the name of another column. */
+/* Columns of the samples must differ, too: no input may have the name of another column. */
 static void check_names(const struct pound_study *study, struct problems *problems)
 {
 	for (int k = 0; k < study->n_ratios; k++)
@@ -187,7 +187,7 @@ static void check_names(const struct pound_study *study, struct problems *proble
 	}
 }
 
-/* ---- where varied values go ---- */
+/* ---- ranges of varied fields ---- */
 
 static bool has_parameter(const struct pound_distribution *distribution, const char *name)
 {
@@ -199,8 +199,8 @@ static bool has_parameter(const struct pound_distribution *distribution, const c
 	return false;
 }
 
-/* Whether every value of a distribution is in a field's range.  An end that the distribution names is reached, any
- * other (0 of a lognormal) is not. */
+/* Whether every value of a distribution is in a field's range.  A bound that is a parameter of the distribution counts as a
+ * value, any other bound (0 of a lognormal) does not. */
 static bool supports(const struct field *field, const struct pound_distribution *distribution)
 {
 	double low, high;
@@ -233,7 +233,7 @@ static void check_supports(const struct pound_study *study, struct problems *pro
 	}
 }
 
-/* The interval that a field of the scene covers over all samples and cells. */
+/* The interval of a field of the scene over all samples and cells. */
 void study_check_reach(const struct pound_study *study, const char *path, double *low, double *high)
 {
 	struct pound_field field = study_check_field(path);
@@ -253,7 +253,7 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 	}
 }
 
-/* Whether a field's interval is known, whatever else is wrong: the field was read, and what varies it, if anything does. */
+/* Whether a field's interval is known in spite of other problems: the field is valid, and so are inputs and sweeps of it. */
 bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems)
 {
 	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
@@ -265,7 +265,7 @@ bool study_check_known(const struct pound_study *study, const char *path, const 
 	for (int i = 0; i < n; i++) {
 		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
 		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
-		// one that was not read, or names nothing, may have meant it
+		// an invalid path may have been meant for this field
 		if (!all[i].path || (!here && problems_at(problems, pointer)) || problems_over(problems, pointer))
 			return false;
 		snprintf(pointer, sizeof pointer, "/%s/%d/%s", all[i].list, all[i].index,
@@ -281,7 +281,7 @@ bool study_check_uses(const struct pound_study *study, const char *pattern)
 	return fields_used(fields_find(pattern), NULL, pound_excitation_name(study->scene.excitation.type), NULL);
 }
 
-/* The same of all fields of a list up to NULL. */
+/* The same for all fields of a list that ends with NULL. */
 static bool all_known(const struct pound_study *study, const char *const paths[],
                       const struct problems *problems)
 {
@@ -304,7 +304,7 @@ bool study_check_steps_known(const struct pound_study *study, const struct probl
 	                 problems);
 }
 
-/* A sine of fewer than two samples a cycle would be another, slower one. */
+/* A sine with fewer than two samples per cycle would appear as a slower sine (aliasing). */
 static void check_harmonic(const struct pound_study *study, struct problems *problems)
 {
 	static const char *const wave[] = {"/excitation/type", "/excitation/frequency_hz",
@@ -363,7 +363,7 @@ bool study_check_applies(const struct pound_study *study, int output)
 
 static void check_outputs(const struct pound_study *study, struct problems *problems)
 {
-	// what an output needs of a scene
+	// fields that decide which outputs a scene has
 	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model", NULL};
 	if (!all_known(study, needed, problems))
 		return;
@@ -396,8 +396,8 @@ static bool takes_force(const struct pound_scene *scene, int solver, enum pound_
 	                          : pound_solver_takes_force(solver, force);
 }
 
-/* Every solver of the study must be able to integrate every contact model of its cells; what cannot is refused, as nothing
- * is computed by another model or solver than the study's. */
+/* Every solver of the study must support every contact model of its cells; otherwise the study is refused, as models and solvers
+ * are never replaced silently. */
 static void check_forces(const struct pound_study *study, struct problems *problems)
 {
 	static const char *const needed[] = {"/contact/model", NULL};
@@ -435,7 +435,7 @@ static void check_order(const struct pound_study *study, struct problems *proble
 
 /* ---- ratios ---- */
 
-/* An input that is above in one ratio may be nowhere else in them. */
+/* Whether a numerator also appears elsewhere in the ratios up to this place. */
 static bool above_elsewhere(const struct pound_study *study, int ratio, int side)
 {
 	const char *path = study->ratios[ratio].of[side];
@@ -448,7 +448,7 @@ static bool above_elsewhere(const struct pound_study *study, int ratio, int side
 	return false;
 }
 
-/* Whether an input was not read to its path, so that a ratio may well mean it. */
+/* Whether the path of some input is invalid, so that a ratio or group may refer to that input. */
 static bool unread_input(const struct pound_study *study)
 {
 	for (int j = 0; j < study->n_inputs; j++)
@@ -516,9 +516,9 @@ static void check_groups(const struct pound_study *study, struct problems *probl
 		check_group(study, g, problems);
 }
 
-/* ---- all of it ---- */
+/* ---- the study ---- */
 
-/* Whether the number of rows is known: what is wrong with the seed does not matter to it. */
+/* Whether the members that determine the number of rows are valid. */
 static bool rows_known(const struct problems *problems)
 {
 	static const char *const all[] = {"/design/method", "/design/rows",  "/design/randomisations",
@@ -529,10 +529,10 @@ static bool rows_known(const struct problems *problems)
 	return is;
 }
 
-/* Checks what members mean together.
+/* Checks members against each other.
  *
- * Given    study     -         -       read, with problems or without
- * Returns  problems  -         -       more of them
+ * Given    study     -         -       read, possibly with problems
+ * Returns  problems  -         -       further problems are added
  *
  * Test     unit_study_cases, unit_study_check
  */
@@ -551,7 +551,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 			study_size_check_rows(study, problems);
 		return;
 	}
-	// each as soon as what it reads is known, so that all is reported at once
+	// each check runs if the members that it reads are valid, so that one request reports as many problems as possible
 	check_supports(study, problems);
 	check_excitation(study, problems);
 	study_suite_check(study, problems);

@@ -1,6 +1,6 @@
-/* study_contact.c - which members of a contact its models read, and what they do not take.
+/* study_contact.c - refuses members of a contact that its models do not read, and values that they cannot use.
  *
- * The model may be swept: a member is used if one of the models reads it. */
+ * The model may be swept: a member is used if at least one of the models reads it. */
 #include <stdio.h>
 #include <string.h>
 
@@ -11,13 +11,13 @@
 
 enum { POINTER_SIZE = 64 };
 
-/* which of the members that determine a stiffness are given */
+/* given members that determine a stiffness */
 struct stiffness_given {
 	bool linear; /* stiffness_n_m */
 	bool power;  /* hertz_stiffness_n_m1_5 */
 };
 
-/* The given member that a model reads in place of another, NULL: none. */
+/* The given member that a model reads instead of `member`, NULL: none. */
 static const char *instead(int model, const char *member, struct stiffness_given given)
 {
 	static const char linear[] = "stiffness_n_m", power[] = "hertz_stiffness_n_m1_5";
@@ -30,10 +30,10 @@ static const char *instead(int model, const char *member, struct stiffness_given
 
 /* ---- members of a document ---- */
 
-/* The models that a contact has in some cell.
+/* The models of a contact in all cells.
  *
- * Given    model   that of the contact itself
- * Returns  models  (value)   rows, at least one; wrong names are left out
+ * Given    model   of the contact without sweeps
+ * Returns  models  (value)   rows, at least one; invalid names are left out
  */
 static int models_of(const struct reader *r, int model, int models[static POUND_CONTACT_MODELS])
 {
@@ -65,10 +65,10 @@ static bool has(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* Notes every member of a contact that none of its models reads.
+/* Adds a problem for every member of a contact that none of its models reads.
  *
- * Given    node    the contact's object, read; the pointer is that of it
- *          model   the contact's own
+ * Given    node    the contact's object, already read; r->pointer points to it
+ *          model   of the contact without sweeps
  * Test     unit_study_cases
  */
 void reader_contact(struct reader *r, const cJSON *node, int model)
@@ -76,7 +76,7 @@ void reader_contact(struct reader *r, const cJSON *node, int model)
 	int models[POUND_CONTACT_MODELS];
 	const cJSON *member, *name = cJSON_GetObjectItemCaseSensitive(node, "model");
 	if (name && (!cJSON_IsString(name) || fields_choice(pound_contact_name, name->valuestring) < 0))
-		return; // not known
+		return; // the model is invalid
 	const int n = models_of(r, model, models);
 	const struct stiffness_given given = {has(node, "stiffness_n_m"), has(node, "hertz_stiffness_n_m1_5")};
 	cJSON_ArrayForEach(member, node)
@@ -134,7 +134,7 @@ const char *study_contact_idle(const struct pound_study *study, const char *memb
 	    given_or_varied(study, "/contact/hertz_stiffness_n_m1_5", contact->hertz_stiffness)};
 	bool reads = false, used = false;
 	for (int k = 0; k < (swept ? swept->n_values : 1); k++) {
-		// values that were not read are NAN or negative
+		// invalid values are NAN or negative
 		const double row = swept ? swept->values[k] : contact->model;
 		const bool here = !(row >= 0) || pound_contact_reads((int)row, member);
 		reads |= here;
@@ -145,9 +145,9 @@ const char *study_contact_idle(const struct pound_study *study, const char *memb
 	               : NULL;
 }
 
-/* ---- what a model does not take ---- */
+/* ---- values that a model cannot use ---- */
 
-/* Where the value of a member comes from: the pointer to its distribution, its sweep or itself. */
+/* Pointer to the source of a member's value: its distribution, its sweep or the member itself. */
 static void source_of(const struct pound_study *study, const char *path, char pointer[static POINTER_SIZE])
 {
 	snprintf(pointer, POINTER_SIZE, "/scene%s", path);
@@ -159,7 +159,7 @@ static void source_of(const struct pound_study *study, const char *path, char po
 			snprintf(pointer, POINTER_SIZE, "/sweep/%d/values", s);
 }
 
-/* Every contact of every cell must have the dashpot that its restitution asks for, and the yield overlap if it needs one. */
+/* In every cell, the restitution must have a finite dashpot, and the yield overlap must be given if the model needs it. */
 void study_contact_check(const struct pound_study *study, struct problems *problems)
 {
 	static const char restitution[] = "/contact/restitution", yield[] = "/contact/yield_overlap_m";

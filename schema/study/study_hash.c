@@ -1,7 +1,7 @@
-/* study_hash.c - what a study means, as one number.
+/* study_hash.c - the hash of a study: equal for documents of the same study.
  *
- * The study is written back as a document with every member that its kind and excitation use, in the order of
- * fields.c, numbers in their shortest form, names left out; the hash is the SHA-256 of that text. */
+ * The study is written as a canonical document: every member that its kind and excitation use, in the order of
+ * fields.c, numbers in their shortest form, names left out; the hash is the SHA-256 of this text. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,14 +24,14 @@ static bool is_name(const struct field *field)
 	       strcmp(field->pattern, "/groups/*/name") == 0 || strcmp(field->pattern, "/inputs/*/name") == 0;
 }
 
-/* Whether a member of the scene has its default value and came after hashes had been stored. */
+/* Whether a member of the scene has its default and was added after hashes had been stored: old hashes must stay valid. */
 static bool is_unwritten(const struct field *field, const void *base)
 {
 	const struct pound_field at = {.type = field_types[field->type].varied, .offset = field->offset};
 	return field->unwritten && pound_scene_field(base, at) == field->absent;
 }
 
-/* The members at a pattern that hold one value each. */
+/* Writes the members of the object at a pattern, except objects and lists. */
 static void write_members(struct canon *c, const char *pattern, const void *base)
 {
 	for (int i = 0; i < fields_count; i++) {
@@ -87,7 +87,8 @@ static void write_buildings(struct canon *c)
 	writer_end(&c->w);
 }
 
-/* A contact is written with all it follows, but what it has for itself is another meaning where that varies. */
+/* A contact is written with inherited values; its own members are also listed, as varying the scene's contact does not change
+ * them. */
 static void write_contacts(struct canon *c)
 {
 	writer_array(&c->w, "contacts", WRITER_LINES);
@@ -115,7 +116,7 @@ static void write_place(struct canon *c, const char *name, const struct pound_st
 	writer_end(&c->w);
 }
 
-/* Where outputs of a row are wanted, and its spectrum. */
+/* The places of the outputs of a row of buildings and of its spectrum. */
 static void write_places(struct canon *c)
 {
 	writer_array(&c->w, "places", WRITER_LINES);
@@ -138,7 +139,7 @@ void study_digest(const void *bytes, size_t n, char hex[STUDY_HASH_SIZE])
 		snprintf(hex + 2 * i, 3, "%02x", digest[i]);
 }
 
-/* The records of a suite, their samples as a digest; where these came from is no part of the meaning. */
+/* The records of a suite, with a digest of their samples; the source of the samples does not matter. */
 static void write_suite(struct canon *c)
 {
 	const struct pound_excitation *e = &c->study->scene.excitation;
@@ -265,14 +266,14 @@ static void write_spectrum(struct canon *c)
 	writer_end(&c->w);
 }
 
-/* A varied value as a document has it. */
+/* Writes a varied value as in a document. */
 void study_value(struct writer *writer, const char *name, const char *path, double value)
 {
 	struct field_place place;
 	field_write(writer, fields_scene(path, &place), name, value);
 }
 
-/* The word that a varied value is written as; NULL: it is written as a number. */
+/* The name of a varied value; NULL: the value is written as a number. */
 const char *study_choice(const char *path, double value)
 {
 	struct field_place place;
@@ -280,7 +281,7 @@ const char *study_choice(const char *path, double value)
 	return field_types[field->type].word ? field_types[field->type].word(field, value) : NULL;
 }
 
-/* The hash of a study's meaning.
+/* The hash of a study.
  *
  * Given    study     -         -       read by study_from_json
  * Returns  hex       (65)      -       SHA-256 in lower-case hex, zero-terminated

@@ -1,5 +1,5 @@
-/* study_inline.c - copies of a document of recorded ground motions: samples in place of files, files with their SHA-256, files in
- * place of samples. */
+/* study_inline.c - copies of a document with recorded ground motions: samples in place of files, files with their SHA-256, or files
+ * in place of samples. */
 #include <cjson/cJSON.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,12 +32,12 @@ bool study_names_files(const char *text, size_t length)
 	return names;
 }
 
-/* What a copy has of a record, and which records it is about. */
+/* How a copy writes records, and which records it changes. */
 enum form { SAMPLES, HASHES, FILES };
 
 static const struct {
-	bool of_file;        /* records that name a file; else those that have samples */
-	const char *dropped; /* members, each between blanks */
+	bool of_file;        /* changes records with a file; false: records with samples */
+	const char *dropped; /* members left out, each between spaces */
 } forms[] = {
     [SAMPLES] = {true, " file sha256 unit channel time_step_s name "},
     [HASHES] = {true, " sha256 "},
@@ -46,7 +46,7 @@ static const struct {
 
 struct copy {
 	struct writer w;
-	const cJSON *records; /* of the suite */
+	const cJSON *records; /* array of the suite's records */
 	const struct pound_study *read;
 	enum form form;
 };
@@ -82,7 +82,7 @@ static void write_record(struct copy *copy, const cJSON *record, int k)
 	writer_end(&copy->w);
 }
 
-/* Writes the records that the copy is about in its form, all else as it is. */
+/* Called for each value: writes a record that the copy changes; false: json_write copies the value. */
 static bool replace(void *with, const cJSON *parent, const cJSON *child, int k)
 {
 	struct copy *copy = with;
@@ -106,7 +106,7 @@ static char *copied(const struct study_document *document, const struct pound_st
 	return writer_take(&copy.w, length);
 }
 
-/* Puts samples in place of the files that a document names.
+/* Replaces the files that a document names by their samples.
  *
  * Given    document   -         -    valid
  *          study      -         -    read from it
@@ -120,7 +120,7 @@ char *study_inline(const struct study_document *document, const struct pound_stu
 	return copied(document, study, SAMPLES, length);
 }
 
-/* Puts the SHA-256 of every file beside its name, as study_inline puts samples in its place.
+/* Adds the SHA-256 of every file beside its name; otherwise as study_inline.
  *
  * Test     unit_suite: a_file_is_known_by_its_hash
  */
@@ -130,7 +130,7 @@ char *study_name_hashes(const struct study_document *document, const struct poun
 	return copied(document, study, HASHES, length);
 }
 
-/* Puts names of files in place of samples: study_record_file of each.  The files are for the caller to write.
+/* Replaces samples by file names (study_record_file).  The caller writes the files.
  *
  * Test     client_suite: from_files_to_a_figure_in_three_commands
  */

@@ -1,8 +1,8 @@
-/* study_json.c - the bytes of a study document -> the study.
+/* study_json.c - reads a study document in JSON into a study.
  *
- * 1. the strict check and the parser: text -> tree, or where it is not JSON;
- * 2. the tree is walked beside the rows of fields.c: each member known, used, there once, of its type, in range;
- * 3. study_check.c looks at what members mean together.
+ * 1. strict check and parser: text -> tree, or the line and column where the text is not JSON;
+ * 2. every member of the tree by its row of fields.c: known, used, not repeated, right type, in range;
+ * 3. study_check.c checks members against each other.
  *
  * reader.c reads one value, study_varied.c the inputs and sweeps. */
 #include "schema/study/study_json.h"
@@ -23,17 +23,17 @@
 #include "schema/study/study_split.h"
 #include "schema/study/study_suite.h"
 
-// rows of a quasi-random design when the document says nothing: powers of two; one that grows begins with few
+// default rows of a quasi-random design, powers of two; a growing design starts with the few
 enum { ROWS_QUASI_RANDOM = 1024, ROWS_FIRST = 2 };
 
-/* One allocation holds a study and all it points to. */
+/* One allocation for a study and the arrays it points to. */
 struct block {
 	struct pound_study study;
 	struct pound_input inputs[POUND_INPUTS_MAX];
 	struct pound_sweep sweeps[POUND_SWEEPS_MAX];
 	struct pound_building buildings[POUND_BUILDINGS_MAX];
 	struct pound_storey_place places[POUND_PLACES_MAX];
-	struct suite_source *suite; /* of the records of a suite */
+	struct suite_source *suite; /* sources of the records of a suite */
 	double numbers[];           /* samples and sweep values; contacts, records and texts follow them */
 };
 
@@ -47,7 +47,7 @@ static const struct field *member_field(const char *pattern, const char *name)
 	return NULL;
 }
 
-/* What is written here for a quantity that others give; NULL: not known. */
+/* How to write a quantity that other programs have as a member of another name or unit; NULL: not known. */
 static const char *instead_of(const char *name)
 {
 	static const char *const known[][2] = {
@@ -69,9 +69,9 @@ static const char *instead_of(const char *name)
 	return NULL;
 }
 
-enum { OBJECTS_MOST = 3 }; // a name that more objects have (type, name) shows nothing
+enum { OBJECTS_MOST = 3 }; // a name in more objects (type, name) is too ambiguous to suggest
 
-/* The first object of such a study with a member of this name, as its pattern; false: no object has one, or too many. */
+/* The pattern of the first object with a member of this name in such a study; false: no object has one, or too many. */
 static bool other_object(const struct reader *r, const char *name, char text[80])
 {
 	const struct field *first = NULL;
@@ -127,7 +127,7 @@ static void unused(struct reader *r, const struct field *field)
 		problems_add(r->problems, r->pointer, "is not used by excitation \"%s\"", r->excitation);
 }
 
-/* Whether a member has the name of an earlier one. */
+/* Whether an earlier member has the same name. */
 bool reader_seen(const cJSON *object, const cJSON *member)
 {
 	for (const cJSON *other = object->child; other != member; other = other->next)
@@ -136,7 +136,7 @@ bool reader_seen(const cJSON *object, const cJSON *member)
 	return false;
 }
 
-/* Notes every member of an object that must be there and is not.
+/* Adds a problem for every missing required member of an object.
  *
  * Test     unit_study_cases
  */
@@ -145,7 +145,7 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 	const struct field *object = fields_find(pattern);
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
-		// where the kind is not known, what an object that is there needs in any kind that has it
+		// unknown kind: require only members of all kinds, or of the same kinds as the object
 		bool kind_known =
 		    r->kind || !field->kinds || (object && object->kinds && strcmp(object->kinds, field->kinds) == 0);
 		bool needed = isnan(field->absent) && fields_child(field, pattern) && kind_known &&
@@ -167,8 +167,8 @@ void reader_require(struct reader *r, const cJSON *node, const char *pattern)
 /* Reads the members of an object, each by its row of fields.c.
  *
  * Given    pattern   -         -       of the object in fields.c
- *          base      -         -       what the offsets of its members count from
- * Returns  value     -         -       false: it is no object
+ *          base      -         -       origin of the offsets of its members
+ * Returns  value     -         -       false: not an object
  *
  * Test     unit_study_cases
  */
@@ -225,7 +225,7 @@ static void read_law(struct reader *r, const struct field *field, const cJSON *n
 static void read_own_law(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	((struct pound_study *)base)->scene.oscillators[0].has_law =
-	    true; // base is that of the current oscillator
+	    true; // base belongs to the current oscillator
 	read_law(r, field, node, base);
 }
 
@@ -236,7 +236,7 @@ static void read_contact(struct reader *r, const struct field *field, const cJSO
 		reader_contact(r, node, r->study->scene.contact.model);
 }
 
-/* Notes a member that is there for nothing. */
+/* Adds a problem if a member is given that the design does not use. */
 static void unneeded(struct reader *r, const cJSON *object, const char *name, const char *design)
 {
 	if (!cJSON_GetObjectItemCaseSensitive(object, name))
@@ -260,9 +260,9 @@ static void read_design(struct reader *r, const struct field *field, const cJSON
 
 /* ---- lists ---- */
 
-/* Refuses every other member of a rigid wall, with `refused` if it may not be one.
+/* Refuses every other member of a rigid wall, and the wall itself for the reason `refused` if not NULL.
  *
- * Returns  value   false: it is no rigid wall, and nothing was read
+ * Returns  value   false: no rigid wall, and nothing was read
  * Test     unit_study_cases
  */
 bool reader_wall(struct reader *r, const char *pattern, const cJSON *node, const char *refused)
@@ -289,7 +289,7 @@ bool reader_wall(struct reader *r, const char *pattern, const cJSON *node, const
 static void read_oscillator(struct reader *r, const cJSON *node, int i)
 {
 	struct pound_oscillator *oscillator = &r->study->scene.oscillators[i];
-	// offsets in fields.c are those of the first oscillator
+	// offsets in fields.c belong to the first oscillator
 	char *base = (char *)r->study + (size_t)i * sizeof *oscillator;
 	oscillator->rigid_wall =
 	    reader_wall(r, "/scene/oscillators/*", node,
@@ -328,7 +328,7 @@ static void read_outputs(struct reader *r, const struct field *field, const cJSO
 	r->study->n_outputs = reader_each(r, field, node, read_output);
 }
 
-/* Contacts are read when the scene's contact is known, which they follow: reader_contacts. */
+/* Contacts inherit from the scene's contact, so reader_contacts reads them after the whole document. */
 static void read_later(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)r, (void)field, (void)node, (void)base;
@@ -375,7 +375,7 @@ static const struct {
     {"/convergence/adaptive/tolerances", reader_settings},
 };
 
-/* Reads the value of a field: by its own function if it has one, else by its type. */
+/* Reads the value of a field: with its own function if it has one, else with the function of its type. */
 void reader_value(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++)
@@ -388,10 +388,10 @@ void reader_value(struct reader *r, const struct field *field, const cJSON *node
 
 /* ---- the document ---- */
 
-/* Fills a study with what absent members mean; what its excitation does not use is 0. */
+/* Fills a study with the defaults of its members; members that its excitation does not use are 0. */
 static void defaults(struct pound_study *study, const char *excitation)
 {
-	// whose elements are objects of their own
+	// lists whose elements are stored outside struct pound_study
 	static const char *const elsewhere_kept[] = {
 	    "/inputs/",          "/sweep/",          "/ratios/", "/groups/",
 	    "/scene/buildings/", "/scene/contacts/", "/places/", "/scene/excitation/records/"};
@@ -412,7 +412,7 @@ static void defaults(struct pound_study *study, const char *excitation)
 		study->scene.excitation.signals = 1;
 }
 
-/* The name that a choice has in an object, or its default; NULL: it has a wrong one. */
+/* The name that an object gives for a choice, or the default; NULL: invalid. */
 static const char *chosen(const cJSON *object, const char *pattern)
 {
 	const struct field *field = fields_find(pattern);
@@ -422,7 +422,7 @@ static const char *chosen(const cJSON *object, const char *pattern)
 	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
 }
 
-/* Kind, excitation, solver and swept contact models decide which members there are, so they are looked up before anything is read. */
+/* Looks up kind, excitation, solver and sweeps before the document is read, as they decide which members are used. */
 static void foresee(struct reader *r, const cJSON *document)
 {
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
@@ -438,13 +438,13 @@ static void outputs_default(struct pound_study *study)
 {
 	for (int k = 0; fields_outputs_absent[k]; k++) {
 		int output = fields_choice(pound_output_name, fields_outputs_absent[k]);
-		// what takes runs of its own is run where it is named
+		// an output that needs runs of its own must be requested
 		if (study_check_applies(study, output) && !pound_output_observes(output, &study->scene))
 			study->outputs[study->n_outputs++] = output;
 	}
 }
 
-/* Contacts that a document of that length has at most: each takes its levels at least. */
+/* Most contacts that a document of that length can have: each has at least its levels. */
 static size_t contacts_room(size_t length)
 {
 	const size_t most = length / strlen("{\"levels\":[1,1]}") + 1;
@@ -453,7 +453,7 @@ static size_t contacts_room(size_t length)
 
 static struct pound_study *block_create(size_t length)
 {
-	// an element takes two characters at least, and a text is never longer than its spelling
+	// an element of a list takes at least two characters, and a string is never longer than in the document
 	const size_t numbers = length / 2 + 1, contacts = contacts_room(length),
 	             records = (size_t)suite_room(length);
 	const struct pound_excitation *e;
@@ -472,7 +472,7 @@ static struct pound_study *block_create(size_t length)
 	return &block->study;
 }
 
-/* What is run elsewhere is a sensitivity study, whether it says so or not. */
+/* A study of an external model is a sensitivity study, also without a member "kind". */
 static void sceneless(struct reader *r)
 {
 	r->study->elsewhere = true;
@@ -482,7 +482,7 @@ static void sceneless(struct reader *r)
 		r->kind = study_kind_name(POUND_KIND_SENSITIVITY);
 }
 
-/* The signals of a suite. */
+/* Sets the number of signals of a suite. */
 static void signals_count(struct pound_excitation *e)
 {
 	if (e->n_records)
@@ -492,9 +492,9 @@ static void signals_count(struct pound_excitation *e)
 /* Reads a study document.
  *
  * Given    document  -         -       its text may be any bytes
- * Returns  value     -         -       the study; NULL: problems->status says why
- *          problems  -         -       all that is wrong, in the order of the document, then between members
- * Memory   allocates for study_free one block, about 5 bytes per byte of text, and the samples of files
+ * Returns  value     -         -       the study; NULL: failed, see problems->status
+ *          problems  -         -       problems in the order of the document, then problems between members
+ * Memory   allocates one block, about 5 bytes per byte of text, and the samples of files; free with study_free
  *
  * Test     unit_study_cases, unit_study_json, unit_suite
  */
@@ -566,7 +566,7 @@ struct pound_study *study_from_json(const char *text, size_t length, struct prob
 	return study_from_document(&(struct study_document){.text = text, .length = length}, problems);
 }
 
-/* Reads a document for its design alone: a sensitivity study, with a scene or of a model that is run elsewhere.
+/* Reads a document for its design only: a sensitivity study with a scene, or without one, of an external model.
  *
  * Given, Returns, Memory as study_from_json
  *

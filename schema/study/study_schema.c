@@ -1,4 +1,4 @@
-/* study_schema.c - a study document as Schema Objects of OpenAPI: objects, lists, and what is said of any field.
+/* study_schema.c - a study document as Schema Objects of OpenAPI: objects, lists, and the description of each field.
  *
  * Source   OpenAPI Specification 3.0.3, Schema Object */
 #include "schema/study/study_schema.h"
@@ -10,7 +10,7 @@
 #include "engine/pound.h"
 #include "schema/study/field_types.h"
 
-/* The parameters of all distributions: which of them there are depends on its type. */
+/* The parameters of all distributions; the type of a distribution decides which of them it has. */
 static void parameters(struct writer *w)
 {
 	const char *seen[16], *parameter;
@@ -31,7 +31,7 @@ static void parameters(struct writer *w)
 		}
 }
 
-/* What the parameters of each distribution must be. */
+/* Rules for the parameters of each distribution, as text. */
 static void rules(char *text, size_t size)
 {
 	const char *rule;
@@ -41,7 +41,8 @@ static void rules(char *text, size_t size)
 			n += (size_t)snprintf(text + n, size - n, "; %s: %s", pound_distribution_name(row), rule);
 }
 
-/* The default of a field, if one is known: an absent yield displacement, of 0, is found otherwise. */
+/* The default of a field, if it has one.  A default of 0 outside the valid range means that the value is determined otherwise, such
+ * as the yield displacement. */
 static void absent(struct writer *w, const struct field *field)
 {
 	bool found_otherwise = field->ends & FIELD_OPEN_MIN && field->absent == field->min;
@@ -69,7 +70,7 @@ static void property(struct writer *w, const char *name, const struct field *fie
 	writer_end(w);
 }
 
-/* Whether a member must be there in every study that has its object. */
+/* Whether a member is required in every study that has the object at the pattern. */
 static bool required(const struct field *field, const char *pattern)
 {
 	return fields_child(field, pattern) && isnan(field->absent) && !field->types && !field->instead &&
@@ -127,7 +128,7 @@ static void elements(struct writer *w, const struct field *field)
 		writer_json(w, "items", "{}");
 }
 
-/* A list; one that may be a range has the members of a range too. */
+/* A list; a list that may also be a range is one of an array or an object with the members of the range. */
 void study_schema_list(struct writer *w, const struct field *field)
 {
 	bool range = false;

@@ -5,7 +5,7 @@
 #include "schema/json/json_writer.h"
 #include "schema/study/fields.h"
 
-/* Of the object at a pattern ("" is the study): its type, its properties and which of them are required. */
+/* Writes the type, properties and required members of the object at a pattern ("" is the study). */
 void study_schema_members(struct writer *w, const char *pattern);
 
 void study_schema_list(struct writer *w, const struct field *field);

@@ -1,4 +1,4 @@
-/* study_separation.c - studies of how wide a gap has to be. */
+/* study_separation.c - studies of the gap needed: reading, checks, defaults and size. */
 #include "schema/study/study_separation.h"
 
 #include <math.h>
@@ -11,18 +11,18 @@
 
 enum {
 	POINTER_SIZE = 64,
-	GAPS_ROUND = 41, /* gaps that a study does not name, at most */
-	ROW_BYTES = 200, /* of a result: of a gap, a rate and a curve; of the gap of a run */
+	GAPS_ROUND = 41, /* most gaps of a study that lists none */
+	ROW_BYTES = 200, /* bytes in a result: of a gap with rate and curve; NUMBER_BYTES: of the gap of a run */
 	NUMBER_BYTES = 22,
 };
 
 static const double probabilities_absent[] = {0.5, 0.16, 0.1, 0.05, 0.02, 0.01};
 
-/* The lists of numbers, and the way in which they go. */
+/* The lists of numbers, and their order. */
 static const struct {
 	const char *pattern;
-	size_t n, values; /* in struct pound_separation */
-	int way;          /* 1: each is greater than the one before, -1: smaller, 0: any */
+	size_t n, values; /* offsets in struct pound_separation */
+	int way;          /* 1: ascending, -1: descending, 0: any order */
 } lists[] = {
 #define LIST(name, member, way)                                             \
 	{                                                                       \
@@ -78,7 +78,7 @@ void reader_undesigned(struct reader *r, const cJSON *document)
 	}
 }
 
-/* The sweep that a path names; -1: none */
+/* Index of the sweep with that path; -1: none */
 static int sweep_of(const struct pound_study *study, const char *path)
 {
 	int s = study->n_sweeps - 1;
@@ -115,7 +115,7 @@ static void check_intensity(const struct pound_study *study, struct problems *pr
 	}
 }
 
-/* What members mean together.
+/* Checks members against each other.
  *
  * Test     unit_study_cases
  */
@@ -137,7 +137,7 @@ void study_separation_check(const struct pound_study *study, struct problems *pr
 		problems_add(problems, "/separation/return_periods_years", "needs \"hazard\"");
 }
 
-/* Lays out a study that is right.
+/* Fills in defaults and outputs of a valid study.
  *
  * Test     unit_separation_result: outputs_with_pounding_are_those_of_a_response
  */
@@ -170,7 +170,7 @@ void study_separation_lay(struct pound_study *study)
 	}
 	memcpy(study->outputs, rows, sizeof *rows * (size_t)n);
 	study->n_outputs = n;
-	s->n_own *= pound_study_gaps(study); // as study_places_lay puts each there once for each contact
+	s->n_own *= pound_study_gaps(study); // as study_places_lay makes one of each per contact
 }
 
 struct pound_study study_separation_like(const struct pound_study *study)
@@ -183,7 +183,7 @@ struct pound_study study_separation_like(const struct pound_study *study)
 	return like;
 }
 
-/* Bytes of a result that say how wide the gap has to be. */
+/* Bytes of the gaps needed in a result. */
 double study_separation_bytes(const struct pound_study *study)
 {
 	const struct pound_separation *s = &study->separation;

@@ -4,14 +4,14 @@
 static const struct pound_settings steps = {6, {5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4}};
 static const struct pound_settings tolerances = {5, {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}};
 
-/* Gives every solver that has a setting the values of an absent list. */
+/* Gives every solver with a setting the default list. */
 void settings_default(struct pound_study *study)
 {
 	for (int row = 1; row < POUND_SOLVERS; row++)
 		study->convergence.settings[row] = pound_solver_takes_step(row) ? steps : tolerances;
 }
 
-/* Reads a list of settings; an empty one leaves its solver out.
+/* Reads a list of settings; an empty list excludes its solver from the comparison.
  *
  * Test     unit_study_json: absent_settings_are_some_and_empty_ones_none
  */

@@ -1,4 +1,4 @@
-/* study_size.c - how much a study asks for: cells, runs, samples and steps, and the limits of each. */
+/* study_size.c - the size of a study (cells, runs, samples, steps) and its limits. */
 #include "schema/study/study_size.h"
 
 #include <math.h>
@@ -50,7 +50,7 @@ static const char *size_pointer(const struct pound_study *study)
 	return pound_study_sampled(study) ? "/design/rows" : "/scene/excitation/signals";
 }
 
-/* Runs of one cell for one signal. */
+/* Runs per cell and signal. */
 static double design_runs(const struct pound_study *study)
 {
 	if (study->kind == POUND_KIND_CONVERGENCE)
@@ -59,7 +59,7 @@ static double design_runs(const struct pound_study *study)
 	                                   : (double)pound_design_rows_most(study) * pound_design_samples(study);
 }
 
-/* Steps of the longest sample interval; those of an adaptive solver are not known, its samples count as one each. */
+/* Steps of the longest sample interval; 1 for a solver without a fixed step, as its steps are not known. */
 static double interval_steps(const struct pound_study *study, const struct pound_solver *solver)
 {
 	double low, high;
@@ -105,7 +105,8 @@ void study_size_check_rows(const struct pound_study *study, struct problems *pro
 		             2 * design->randomisations, design->rows);
 }
 
-/* A design that grows waits for every S1 and ST, and of one random signal that the samples of a row share no ST is known. */
+/* A growing design needs intervals of every S1 and ST, and ST cannot be estimated from one random signal that the samples of a row
+ * share. */
 static void check_until(const struct pound_study *study, struct problems *problems)
 {
 	if (study->design.until.half_width > 0 && study_check_uses(study, "/scene/excitation/signals") &&
@@ -140,7 +141,7 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 		return;
 	double at_once =
 	    study_size_cells(study) * (sampled ? pound_design_samples(study) : 1) * study_samples(study);
-	bool few = runs <= most; // more have been reported
+	bool few = runs <= most; // else reported above
 	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
 		                "asks for %.3g samples of ground motion in all runs, at most %.0e",
@@ -163,7 +164,7 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 	check_steps(study, problems);
 }
 
-/* ---- what a study asks for ---- */
+/* ---- sizes ---- */
 
 int study_cells(const struct pound_study *study)
 {
@@ -201,7 +202,7 @@ double study_cell_sweep(const struct pound_study *study, int cell, int sweep)
 	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
 }
 
-/* The scene of a cell; the last sweep runs fastest.  Buildings and contacts are the study's, without what a sweep varies there.
+/* The scene of a cell; the last sweep varies fastest.  Buildings and contacts are the study's: sweeps of them have no effect here.
  *
  * Test     unit_study_check: cells_are_the_product_of_the_sweeps_the_last_one_fastest
  */

@@ -1,4 +1,4 @@
-/* study_spectrum.c - frequencies as a list or a range; a sensitivity study has an output for each of them. */
+/* study_spectrum.c - frequencies of floor spectra as a list or a range; in a sensitivity study each frequency is an output. */
 #include "schema/study/study_spectrum.h"
 
 #include <math.h>
@@ -10,10 +10,10 @@
 #include "schema/study/study_check.h"
 #include "schema/study/study_json.h"
 
-/* Frequencies times the sample step, at most: an oscillator then takes about 1000 steps in a sample. */
+/* Largest frequency times the sample step: an oscillator then takes about 1000 steps per sample. */
 static const double PITCH_MAX = 100;
 
-/* Whether a member of the current object was found wrong. */
+/* Whether a member of the current object has a problem. */
 static bool wrong(struct reader *r, const char *name)
 {
 	size_t length = reader_enter(r, name);
@@ -22,7 +22,7 @@ static bool wrong(struct reader *r, const char *name)
 	return is;
 }
 
-/* Reads frequencies: a list of them, or a range.
+/* Reads frequencies as a list or as a range.
  *
  * Test     unit_study_spectrum: frequencies_are_a_list_or_a_range
  */
@@ -52,8 +52,8 @@ static bool asks_for_ordinates(const struct pound_study *study)
 	return false;
 }
 
-/* Whether output and spectrum of a sensitivity study are there both or not at all; which frequencies matter there is for
- * the user to say.
+/* A sensitivity study must have both output "floor_spectrum" and spectrum, or neither; the frequencies have no default, as only the
+ * user knows which matter.
  *
  * Test     unit_study_cases
  */
@@ -70,7 +70,7 @@ void reader_ordinates(struct reader *r, const cJSON *document)
 		             "is required: 1 to %d frequencies of the floor spectrum", POUND_ORDINATES_MAX);
 }
 
-/* ---- what must hold ---- */
+/* ---- checks ---- */
 
 static double highest(const struct pound_spectrum *spectrum)
 {
@@ -80,10 +80,10 @@ static double highest(const struct pound_spectrum *spectrum)
 	return most;
 }
 
-/* Checks what the members of a spectrum mean beside the rest of the study.
+/* Checks the spectrum against the rest of the study.
  *
- * Given    study      -     read; its outputs and its spectrum known to be right
- * Returns  problems   -     more of them
+ * Given    study      -     read; outputs and spectrum are valid
+ * Returns  problems   -     further problems are added
  *
  * Test     unit_study_cases
  */
@@ -123,7 +123,7 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 
 /* ---- outputs ---- */
 
-/* Drops a spectrum that is not asked for, and puts an output in place of each ordinate.
+/* Removes a spectrum that is not requested, and makes one output of each ordinate.
  *
  * Test     unit_study_spectrum: every_frequency_is_an_output
  */

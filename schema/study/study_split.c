@@ -1,7 +1,7 @@
-/* study_split.c - studies whose number of signals the engine chooses: what they need, and what they ask for at most.
+/* study_split.c - studies whose number of signals the engine chooses: required members and size.
  *
- * The study that is read has the least number of signals, and so the most rows, that a pilot may choose.  Every choice is of as many
- * runs, so what is counted and estimated of that study holds for all. */
+ * After reading, the study has the least number of signals that a pilot may choose, and so the most rows.  Every choice has the same
+ * number of runs, so counts and estimates of this study hold for all choices. */
 #include "schema/study/study_split.h"
 
 #include "schema/study/study_check.h"
@@ -9,7 +9,7 @@
 static const char signals[] = "/scene/excitation/signals";
 static const char runs[] = "/design/runs";
 
-/* Reads "auto", and refuses /design/runs and /design/rows where they mean nothing.
+/* Reads "auto", and checks that /design/runs, /design/rows and /design/until are given only where they are used.
  *
  * Test     unit_study_cases
  */

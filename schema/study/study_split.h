@@ -4,10 +4,10 @@
 
 #include "schema/study/reader.h"
 
-/* What such a study needs, and may not have. */
+/* Checks the members that signals "auto" requires and excludes. */
 void reader_split(struct reader *reader, const cJSON *document);
 
-/* Puts in the least number of signals, and the rows that the runs allow with it: no choice asks for more. */
+/* Fills in the least number of signals and the rows that the runs allow with it: no other number of signals allows more rows. */
 void study_split_lay(struct pound_study *study, struct problems *problems);
 
 #endif

@@ -1,4 +1,4 @@
-/* The object Status of the OpenAPI document. */
+/* study_status.c - the object Status of the OpenAPI document. */
 #include "schema/study/study_status.h"
 
 #include <inttypes.h>
@@ -7,17 +7,17 @@
 #include <string.h>
 #include <time.h>
 
-/* A few digits of a value, towards zero, so that a part is 1 only when it is all: to print 17 of them takes longer than
- * the rest of the object. */
+/* Rounds down to four decimals, so that a fraction is 1 only if it is complete; printing 17 digits takes longer than the rest of
+ * the object. */
 static double rounded(double value)
 {
 	return floor(1e4 * value) / 1e4;
 }
 
-/* How much longer than estimated a study may take before its status says so. */
+/* CPU time over the estimate from which the status reports "over_estimate". */
 static const double OVER = 3;
 
-/* Ten years: no date has more than four digits of years. */
+/* Latest start from now, ten years: years must have four digits. */
 static const double START_MAX_S = 3.2e8;
 
 bool study_status_over(double cpu_s, double cpu_s_estimated)
@@ -25,7 +25,7 @@ bool study_status_over(double cpu_s, double cpu_s_estimated)
 	return cpu_s_estimated > 0 && cpu_s >= OVER * cpu_s_estimated;
 }
 
-/* Time left, when what is left takes as long as what was done. */
+/* Remaining time, if the remaining runs take as long as the finished ones. */
 double study_status_eta(const struct study_status *study, int n_workers)
 {
 	if (strcmp(study->status, "running") != 0 || study->runs_done == 0)
@@ -33,7 +33,7 @@ double study_status_eta(const struct study_status *study, int n_workers)
 	return study->cpu_s / (double)study->runs_done * (double)(study->runs - study->runs_done) / n_workers;
 }
 
-/* When a queued study will start, if those before it take as long as estimated: RFC 3339, UTC. */
+/* Expected start of a queued study, from the estimates of the studies before it: RFC 3339, UTC. */
 static void start_text(const struct study_status *study, int n_workers, char text[static 32])
 {
 	const time_t start = time(NULL) + (time_t)fmin(ceil(study->cpu_s_before / n_workers), START_MAX_S);
@@ -41,7 +41,7 @@ static void start_text(const struct study_status *study, int n_workers, char tex
 	strftime(text, 32, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&start, &utc));
 }
 
-/* Writes it.
+/* Writes the object Status.
  *
  * Test     service_routes: a_finished_study_has_times_in_order_and_all_runs_done;
  *          service_queue: a_queued_study_has_its_place_in_the_queue

@@ -1,8 +1,8 @@
-/* study_suite.c - recorded ground motions as the signals of a scene: their members read, and what these mean together.
+/* study_suite.c - recorded ground motions as the signals of a scene: reads their members and checks them against each other.
  *
- * 1. A record's samples are in the document or in a file beside it, which is read as schema/record reads files of databases.
- * 2. The longest time step of the records is that of the excitation, and its signals are counted.
- * 3. What the records are scaled to decides which members of the scale there are. */
+ * 1. A record's samples are in the document, or in a file in a format of a database, which schema/record reads.
+ * 2. The longest time step of the records becomes the time step of the excitation.
+ * 3. The member "to" of the scale decides which other members the scale has. */
 #include "schema/study/study_suite.h"
 
 #include <math.h>
@@ -19,11 +19,11 @@ enum { POINTER_SIZE = 80 };
 
 static const char RECORD[] = "/scene/excitation/records/*", SCALE[] = "/scene/excitation/scale";
 
-/* Peaks that records may have to be scaled, and largest acceleration that a factor makes of them [m/s2]. */
+/* Least peak of a record that is scaled, and largest acceleration before and after a factor [m/s2]. */
 static const double PEAK_LEAST = 1e-100, PEAK_MOST = 1e100;
-/* Relative difference of two time steps that are the same but for the digits that are printed. */
+/* Relative difference up to which two time steps count as equal, because files print few digits. */
 static const double STEP_EQUAL = 1e-6;
-/* Time step over the period of a spectral acceleration. */
+/* Largest time step over the period of a spectral acceleration. */
 static const double STEPS_MOST = 100;
 
 int suite_room(size_t length)
@@ -34,7 +34,7 @@ int suite_room(size_t length)
 
 /* ---- one record ---- */
 
-/* Reports what is wrong with a member of the object in hand. */
+/* Adds a problem of a member of the current object. */
 static void complain(struct reader *r, const char *name, const char *what)
 {
 	const size_t length = reader_enter(r, name);
@@ -47,7 +47,7 @@ static bool has(const cJSON *object, const char *name)
 	return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-/* Reports what the reader of a file says, where in the file it is in front. */
+/* Adds the problems of reading a file, each with its position in the file. */
 static void complain_of_file(struct reader *r, const char *name, const struct problems *of_file)
 {
 	char what[sizeof of_file->list[0].detail + sizeof of_file->list[0].pointer];
@@ -60,7 +60,7 @@ static void complain_of_file(struct reader *r, const char *name, const struct pr
 		r->problems->status = PROBLEMS_NOMEM;
 }
 
-/* Reports what the document says of a file that says otherwise itself. */
+/* Adds a problem for each member of the document that contradicts the file. */
 static void compare(struct reader *r, const struct suite_record *of, const struct record *record)
 {
 	char what[96];
@@ -120,7 +120,7 @@ static bool is_unit(const char *name)
 	return record_unit_name(row);
 }
 
-/* Samples of the records before one. */
+/* Samples of the records before record k. */
 static double samples_before(const struct reader *r, int k)
 {
 	double samples = 0;
@@ -154,7 +154,7 @@ static void read_record(struct reader *r, const cJSON *node, int k)
 		read_file(r, &got, &r->suite[k]);
 	if (!got.record.name)
 		got.record.name = got.file;
-	((struct pound_record *)r->study->scene.excitation.records)[k] = got.record; // of the study's block
+	((struct pound_record *)r->study->scene.excitation.records)[k] = got.record; // in the study's block
 }
 
 void reader_samples(struct reader *r, const struct field *field, const cJSON *node, char *base)
@@ -163,7 +163,7 @@ void reader_samples(struct reader *r, const struct field *field, const cJSON *no
 	record->n = reader_numbers(r, field, field + 1, node, &record->a); // its element is the next row
 }
 
-/* Reads the records of a suite, and what follows from them.
+/* Reads the records of a suite and derives the time step of the excitation.
  *
  * Test     unit_study_cases, unit_suite
  */
@@ -178,7 +178,7 @@ void reader_records(struct reader *r, const struct field *field, const cJSON *no
 
 /* ---- scale ---- */
 
-/* Reads what the records are scaled to.
+/* Reads the scale of the records.
  *
  * Test     unit_study_cases
  */
@@ -187,7 +187,7 @@ void reader_scale(struct reader *r, const struct field *field, const cJSON *node
 	static const struct {
 		const char *name;
 		bool optional;
-		enum pound_scale_to least; /* scales from this one on have it */
+		enum pound_scale_to least; /* first scale with this member; later scales have it too */
 	} members[] = {{"intensity_m_s2", false, POUND_SCALE_PGA},
 	               {"period_s", false, POUND_SCALE_SA},
 	               {"damping_ratio", true, POUND_SCALE_SA}};
@@ -236,7 +236,7 @@ static void check_record(const struct pound_study *study, int k, double most, st
 		    STEPS_MOST, record->time_step, k, e->scale.period);
 }
 
-/* Checks what the members of a suite mean together.
+/* Checks all records and their scale.
  *
  * Test     unit_study_cases
  */

@@ -1,4 +1,4 @@
-/* study_suite.h - the recorded ground motions of a suite as a document has them.  For the files of schema/study only. */
+/* study_suite.h - the recorded ground motions of a suite in a document.  For the files of schema/study only. */
 #ifndef STUDY_SUITE_H
 #define STUDY_SUITE_H
 
@@ -9,22 +9,22 @@
 /* One element of the records: the motion, and where its samples come from. */
 struct suite_record {
 	struct pound_record record;
-	const char *file;   /* NULL: its samples are in the document, or it is named by its SHA-256 */
-	const char *sha256; /* of a file, hexadecimal; NULL: not given */
-	const char *unit;   /* of a file that names none; NULL: not known */
-	int channel;        /* of a file with several accelerations, from 1; 0: not chosen */
+	const char *file;   /* NULL: samples are in the document, or the file is named by its SHA-256 */
+	const char *sha256; /* of the file, hexadecimal; NULL: not given */
+	const char *unit;   /* for a file that names none; NULL: not given */
+	int channel;        /* which acceleration of a file with several, from 1; 0: not given */
 };
 
-/* What the block of a study keeps of a record. */
+/* The source of a record, kept with the study. */
 struct suite_source {
-	double *samples; /* on the heap, freed with the study; NULL: they are in its block */
+	double *samples; /* on the heap, freed with the study; NULL: samples are in the study's block */
 	struct study_source named;
 };
 
-/* Records that a document of that length has at most. */
+/* Most records that a document of that length can have. */
 int suite_room(size_t length);
 
-/* What must hold of all records together. */
+/* Checks all records and their scale. */
 void study_suite_check(const struct pound_study *study, struct problems *problems);
 
 #endif

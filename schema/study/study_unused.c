@@ -1,4 +1,4 @@
-/* study_unused.c - fields of a scene that nothing depends on, so that varying them would be a mistake. */
+/* study_unused.c - fields of a scene that have no effect, so that varying them would be a mistake. */
 #include <stdio.h>
 #include <string.h>
 
@@ -21,14 +21,14 @@ static const struct pound_sweep *law_sweep(const struct pound_study *study, int 
 	return NULL;
 }
 
-/* Whether a law is the linear one; one that was not read is NAN or negative. */
+/* Whether a law is the linear one; an invalid law is NAN or negative. */
 static bool linear(double law)
 {
 	const char *name = law >= 0 ? pound_law_name((int)law) : NULL;
 	return name && strcmp(name, "linear") == 0;
 }
 
-/* Whether a law is linear in every cell; values that were not read may be anything. */
+/* Whether a law is linear in every cell; invalid values count as not linear. */
 static bool always_linear(const struct pound_study *study, const struct pound_law *law, int oscillator)
 {
 	const struct pound_sweep *types = law_sweep(study, oscillator, "type");
@@ -48,7 +48,7 @@ static bool yield_given(const struct pound_study *study, const struct pound_law 
 	return given;
 }
 
-/* Why varying a field of the law at hand would change nothing, NULL when it may. */
+/* Why varying a field of an oscillator's or the scene's law would change nothing; NULL: it may vary. */
 static const char *law_idle(const struct pound_study *study, const struct field *field, int oscillator)
 {
 	const struct pound_scene *scene = &study->scene;
@@ -69,7 +69,7 @@ static const char *law_idle(const struct pound_study *study, const struct field 
 	return NULL;
 }
 
-/* Whether a field says how contacts act, not where they are. */
+/* Whether a field describes the behavior of contacts, not their position. */
 static bool of_contact(const char *pattern)
 {
 	return strncmp(pattern, "/scene/contact/", 15) == 0 ||
@@ -78,9 +78,9 @@ static bool of_contact(const char *pattern)
 
 /* Why varying a field of the scene would change nothing.
  *
- * Given    study       -   read, with problems in its inputs and sweeps or without
- *          place       -   of the field in the lists on its path
- * Returns  value       -   in words; NULL: it may vary
+ * Given    study       -   read, possibly with problems in its inputs and sweeps
+ *          place       -   indices in the path of the field
+ * Returns  value       -   the reason; NULL: it may vary
  *
  * Test     unit_study_cases
  */

@@ -1,4 +1,4 @@
-/* study_varied.c - what varies in a study: inputs with their distributions, their ratios, sweeps with their values. */
+/* study_varied.c - reads what varies in a study: inputs with their distributions, ratios and groups of inputs, sweeps. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ static int read_list(struct reader *r, const char *pattern, const cJSON *node, c
 	return reader_numbers(r, list, list + 1, node, numbers); // its element is the next row
 }
 
-/* Refuses a parameter that a distribution does not have, and names a related one that has it: lognormal_cov for lognormal. */
+/* Refuses a parameter that a distribution does not have, and suggests a related distribution with it: lognormal_cov for lognormal. */
 static void refuse_parameter(struct reader *r, int type, const char *parameter)
 {
 	const char *name = pound_distribution_name(type), *related = NULL;
@@ -60,7 +60,7 @@ static void require_parameter(struct reader *r, const cJSON *node, const char *n
 	reader_leave(r, length);
 }
 
-/* Reads the parameters of a distribution whose type is known, and reports every rule that they break. */
+/* Reads the parameters of a distribution of known type, and adds a problem for every rule that they break. */
 static void read_parameters(struct reader *r, struct pound_distribution *distribution, const cJSON *node,
                             const cJSON *type)
 {
@@ -92,7 +92,7 @@ static void read_parameters(struct reader *r, struct pound_distribution *distrib
 			problems_add(r->problems, r->pointer, "%s", text);
 }
 
-/* Reads a distribution; the engine's table says which members it has.
+/* Reads a distribution; the engine's table of distributions decides which members it has.
  *
  * Test     unit_study_cases
  */
@@ -114,7 +114,7 @@ void reader_distribution(struct reader *r, const struct field *field, const cJSO
 	}
 }
 
-/* The field of the scene that a path names if it may vary, else NULL. */
+/* The field of the scene that a path names; NULL: none, or it may not vary. */
 static const struct field *varying(const char *path)
 {
 	struct field_place place;
@@ -131,7 +131,7 @@ static void read_input(struct reader *r, const cJSON *element, int j)
 		input->field = study_check_field(input->path);
 }
 
-/* Reads the inputs; what their paths mean in this scene is for study_check.c.
+/* Reads the inputs; study_check.c checks their paths.
  *
  * Test     unit_study_json: what_a_document_says_is_in_the_study
  */
@@ -146,7 +146,7 @@ static void read_ratio(struct reader *r, const cJSON *element, int k)
 	reader_object(r, "/ratios/*", element, (char *)&r->study->ratios[k]);
 }
 
-/* Reads the ratios; whether their paths name inputs is for study_check.c.
+/* Reads the ratios; study_check.c checks that their paths name inputs.
  *
  * Test     unit_study_json: what_a_document_says_is_in_the_study
  */
@@ -173,7 +173,7 @@ static void read_group(struct reader *r, const cJSON *element, int k)
 	reader_object(r, "/groups/*", element, (char *)&r->study->groups[k]);
 }
 
-/* Reads the groups of inputs; which inputs they are is for reader_groups_find.
+/* Reads the groups of inputs; reader_groups_find finds their inputs.
  *
  * Test     unit_study_json: what_a_document_says_is_in_the_study
  */
@@ -183,7 +183,7 @@ void reader_groups(struct reader *r, const struct field *field, const cJSON *nod
 	r->study->n_groups = reader_each(r, field, node, read_group);
 }
 
-/* Reads the paths of the group in hand. */
+/* Reads the paths of the current group. */
 void reader_group(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	struct pound_group *group = (struct pound_group *)base;
@@ -196,7 +196,7 @@ void reader_group(struct reader *r, const struct field *field, const cJSON *node
 	}
 }
 
-/* Finds the inputs of the groups, once all are read; those that are none are for study_check.c. */
+/* Finds the inputs of the groups after all inputs were read; study_check.c reports paths that name no input. */
 void reader_groups_find(struct pound_study *study)
 {
 	for (int g = 0; g < study->n_groups; g++)
@@ -217,7 +217,7 @@ static void read_sweep(struct reader *r, const cJSON *element, int s)
 		sweep->field = study_check_field(cJSON_GetStringValue(path));
 }
 
-/* Reads the sweeps; their paths come first, as they say what the values are.
+/* Reads the sweeps, the path of each before its values, as the path decides their type.
  *
  * Test     unit_study_cases
  */
@@ -227,7 +227,7 @@ void reader_sweeps(struct reader *r, const struct field *field, const cJSON *nod
 	r->study->n_sweeps = reader_each(r, field, node, read_sweep);
 }
 
-/* Reads the values of the current sweep, each as the swept field itself is read.
+/* Reads the values of the current sweep, each by the row of the swept field.
  *
  * Test     unit_study_cases
  */
@@ -235,7 +235,7 @@ void reader_values(struct reader *r, const struct field *field, const cJSON *nod
 {
 	struct pound_sweep *sweep = (struct pound_sweep *)base;
 	if (!r->swept)
-		return; // the path is the problem, reported by study_check.c
+		return; // the path is invalid: reported by study_check.c
 	sweep->n_values = reader_numbers(r, field, r->swept, node, &sweep->values);
 	reader_distinct(r, sweep->values, sweep->n_values, "value");
 }

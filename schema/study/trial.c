@@ -1,12 +1,12 @@
-/* trial.c - a study run for a while, and what it took.
+/* trial.c - runs a study for a limited time and measures its CPU time.
  *
- * The engine looks at a flag while it runs (pound_run_stop_by); a thread sets that once the runs have had their CPU time. */
+ * The engine polls a stop flag while it runs (pound_run_stop_by); a watching thread sets the flag when the CPU time is used up. */
 #include "schema/study/trial.h"
 
 #include <pthread.h>
 #include <time.h>
 
-/* [ns] between two looks at the CPU time */
+/* [ns] between two readings of the CPU time */
 static const long LOOK_EVERY = 2000000;
 
 struct watch {
@@ -14,7 +14,7 @@ struct watch {
 	pthread_cond_t ended;
 	bool over; /* the runs have ended */
 	clockid_t clock;
-	double until; /* [s] by that clock */
+	double until; /* time on `clock` to stop at [s] */
 	const atomic_bool *unwanted;
 	atomic_bool stop;
 };
@@ -48,7 +48,7 @@ static void *watch_run(void *of)
 	return NULL;
 }
 
-/* Runs what there is to run, until the flag is set. */
+/* Runs all blocks, with reductions if `whole`, until the stop flag is set. */
 static enum pound_status run_all(struct pound_run *run, bool whole)
 {
 	enum pound_status status = POUND_OK;

@@ -1,4 +1,4 @@
-/* warnings.c - what is valid in a study and probably not meant: a mass left out, g in place of m/s2, a gap that nothing reaches. */
+/* warnings.c - warnings of valid but probably unintended values: a missing mass, g instead of m/s2, a gap that never closes. */
 #include "schema/study/warnings.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ warn(struct warnings *all, const char *pointer, const char *format, ...)
 	writer_end(all->w);
 }
 
-/* ---- before it is run ---- */
+/* ---- before a run ---- */
 
 /* Bodies: two oscillators, or the buildings of a row. */
 static int bodies_of(const struct pound_study *study)
@@ -49,7 +49,7 @@ static bool is_wall(const struct pound_study *study, int i)
 	                                : study->scene.oscillators[i].rigid_wall;
 }
 
-/* The interval of the masses of a body: of the lightest to the heaviest floor, or as inputs and sweeps vary it. */
+/* The interval of the masses of a body: from the lightest to the heaviest floor, or the range of inputs and sweeps. */
 static void masses_of(const struct pound_study *study, int i, char path[static 40], double *low, double *high)
 {
 	snprintf(path, 40, study->scene.n_buildings ? "/buildings/%d/mass_kg" : "/oscillators/%d/mass_kg", i);
@@ -80,7 +80,7 @@ static void look_at_masses(struct warnings *all, const struct pound_study *study
 	}
 }
 
-/* The interval of the peaks of the ground motions [m/s2]; false: not known. */
+/* The interval of the peak ground accelerations [m/s2]; false: not known. */
 static bool peaks_of(const struct pound_study *study, double *low, double *high)
 {
 	const struct pound_excitation *e = &study->scene.excitation;
@@ -123,7 +123,7 @@ static void look_at_peaks(struct warnings *all, const struct pound_study *study)
 		warn(all, pointer, "has a peak of %.4g m/s2, %.4g g: is its unit m/s2?", low, low / G);
 }
 
-/* Of a building's first mode [Hz]: higher ones may be missed without harm. */
+/* Frequency of a building's first mode [Hz]; time steps too long for higher modes do little harm. */
 static double first_frequency(const struct pound_building *building)
 {
 	struct pound_storeys storeys;
@@ -131,7 +131,7 @@ static double first_frequency(const struct pound_building *building)
 	return storeys.frequency / (2 * 3.14159265358979323846);
 }
 
-/* A building that is added to a row is not among the contacts by itself. */
+/* A building that is added to a row gets no contacts if the contacts are listed. */
 static void look_at_neighbors(struct warnings *all, const struct pound_study *study)
 {
 	const struct pound_scene *scene = &study->scene;
@@ -147,7 +147,7 @@ static void look_at_neighbors(struct warnings *all, const struct pound_study *st
 
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
 {
-	// what one in a thousand scenes exceeds: a distribution without an upper end has no shortest period
+	// quantile 0.999: a distribution without upper bound has no shortest period
 	double fastest = 0, low, high, step = study->scene.excitation.time_step;
 	for (int i = 0; i < bodies_of(study); i++) {
 		char path[40];
@@ -175,7 +175,7 @@ static void look_at_steps(struct warnings *all, const struct pound_study *study)
 		     step, 1 / fastest);
 }
 
-/* ---- when it has been run ---- */
+/* ---- after a run ---- */
 
 static void look_at_gap(struct warnings *all, const struct pound_study *study,
                         const struct pound_result *result)
@@ -195,7 +195,7 @@ static void look_at_gap(struct warnings *all, const struct pound_study *study,
 		     "no run has a contact");
 }
 
-/* A yield displacement that is given and that no run reaches. */
+/* Warns of a given yield displacement that no run reaches. */
 static void look_at_yield(struct warnings *all, const struct pound_study *study,
                           const struct pound_result *result)
 {
@@ -222,11 +222,11 @@ static void look_at_yield(struct warnings *all, const struct pound_study *study,
 	}
 }
 
-/* Yield drifts that are given and that no run reaches. */
+/* Warns of given yield drifts that no run reaches. */
 static void look_at_yield_drifts(struct warnings *all, const struct pound_study *study,
                                  const struct pound_result *result)
 {
-	bool varied = false; // storeys of a cell may then be others
+	bool varied = false; // cells may then differ in their storeys
 	for (int s = 0; s < study->n_sweeps; s++)
 		varied |= study->sweeps[s].field.part == POUND_PART_BUILDINGS;
 	for (int b = 0; b < study->scene.n_buildings && study->kind == POUND_KIND_RESPONSE && !varied; b++) {
@@ -251,7 +251,7 @@ static void look_at_yield_drifts(struct warnings *all, const struct pound_study 
 	}
 }
 
-/* Writes what is valid and probably not meant.
+/* Writes the warnings of a study.
  *
  * Test     unit_warnings
  */
