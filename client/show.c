@@ -112,10 +112,16 @@ static void print_contacts(const struct reading *result, const char *at)
 		table_number(table, reading_number(result, "%s/left_building", contact));
 		table_text(table, levels);
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++) {
+			const bool first = strncmp(members[m], "first_", 6) == 0; // no value in signals without contact
 			double sum = 0;
+			int of = 0;
 			for (int s = 0; s < n; s++)
-				sum += reading_number(result, "%s/signals/%d/contacts/%d/%s", at, s, k, members[m]);
-			table_number(table, sum / n);
+				if (!first ||
+				    reading_number(result, "%s/signals/%d/contacts/%d/contact_count", at, s, k) > 0) {
+					sum += reading_number(result, "%s/signals/%d/contacts/%d/%s", at, s, k, members[m]);
+					of++;
+				}
+			table_number(table, sum / of);
 		}
 	}
 	putchar('\n');

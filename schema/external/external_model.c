@@ -189,7 +189,7 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 		int of = column_named(outputs, outputs->n_columns, column->name,
 		                      strlen(column->name) - (sizeof VARIANCE - 1));
 		if (of < 0 || outputs->columns[of].role != ROLE_OUTPUT)
-			csv_complain(csv, column->name, "is the variance of an output that has no column");
+			csv_complain(csv, column->name, "has no matching output column");
 		else
 			column->index = outputs->columns[of].index;
 	}

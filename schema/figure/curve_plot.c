@@ -204,7 +204,7 @@ void plot_widths(struct plot *plot)
 	int n = cell ? plot_outputs(plot, cell, WIDTH_OUTPUTS_MOST, outputs) : 0, n_keys = 0, j = 0;
 	if (n == 0)
 		return;
-	plot_head(plot, "Half widths of the 95 % intervals against what they cost",
+	plot_head(plot, "Half-widths of the 95 % intervals over CPU time or rows",
 	          plot_sweep_text(cell, 0, NULL, sweep));
 	keys[n_keys++] = (struct key){.name = "widest", .pen = {.ink = INK_TEXT, .width = 2.6, .opacity = 0.55}};
 	keys[n_keys++] =

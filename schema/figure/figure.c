@@ -16,7 +16,7 @@ const struct figure_row figure_rows[] = {
 	{"indices",   "sensitivity",    " cell output index width ",  "inputs",            false, "first-order and total indices with 95 % intervals, a panel for each output", NULL},
 	{"swept",     "sensitivity",    " output index x width ",     "inputs",            false, "indices against a swept number, a line for each input", "it needs a \"sweep\" over a number"},
 	{"given",     "sensitivity",    " cell output width ",        "conditional_means", false, "mean output given one input, with its band", "it needs 30 rows, and an output that varies"},
-	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half widths of the intervals against what they cost", "it needs 60 rows, and an output that varies"},
+	{"widths",    "sensitivity",    " cell output width ",        "stopping",          false, "half-widths of the intervals over CPU time or rows", "it needs 60 rows, and an output that varies"},
 	{"pairs",     "sensitivity",    " cell output width ",        "second_order",      false, "second-order indices of every two inputs", "it needs 30 rows, and at most 4 inputs or \"order\": \"second\""},
 	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding", NULL},
 	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force in time", "it is drawn from the samples of a study with \"histories\": true (pound run --samples FILE)"},

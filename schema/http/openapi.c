@@ -51,7 +51,7 @@ static const struct member members[] = {
 	{"Estimate", "estimated_cpu_s_high", "number", "", "CPU time that 97 of 100 studies with such contacts do not exceed [s of one core]"},
 	{"Estimate", "estimated_bytes", "number",  "", "estimated size in the database [bytes]"},
 	{"Estimate", "estimated_memory_bytes", "number", "", "estimated memory while it runs [bytes]"},
-	{"Estimate", "warnings", "[Fault]", "absent", "what is valid in the study and probably not meant"},
+	{"Estimate", "warnings", "[Fault]", "absent", "valid but probably unintended settings"},
 	{"Figures", "figures",    "[Figure]", "",    "in the order of the table of figures"},
 	{"Figure",  "name",       "string",  "",     "name of the figure, the end of its path"},
 	{"Figure",  "title",      "string",  "",     "what it shows"},

@@ -92,16 +92,16 @@ static void write_split(struct writer *w, const struct pound_study *study, const
 	if (split->decided_by.half_width < 0)
 		snprintf(
 		    note, sizeof note,
-		    "the pilot saw no variance without the noise of its signals: the number of signals is a guess");
+		    "the pilot found no variance beyond the noise of signals, so the number of signals is a guess");
 	else
 		snprintf(
 		    note, sizeof note,
-		    "with %d signals %s; the widest interval foreseen is that of %s of input %s for output %s. Its "
+		    "with %d signals %s; the widest predicted interval is %s of input %s, output %s. Its "
 		    "variance from n rows of R signals is (between_rows + within_rows / R + pairs_of_signals / (R (R "
 		    "- 1))) / n",
 		    split->signals,
-		    grows(study) ? "every interval is foreseen to be narrow enough at the least cost"
-		                 : "the widest interval is foreseen to be the narrowest for these runs",
+		    grows(study) ? "every interval is predicted to be narrow enough at the least cost"
+		                 : "the widest interval is predicted to be the narrowest for these runs",
 		    index_names[split->decided_by.index], study->inputs[split->decided_by.input].name,
 		    study_output_name(study, split->decided_by.output, output));
 	writer_text(w, "note", note);

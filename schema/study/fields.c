@@ -97,7 +97,7 @@ static const char *until_output_name(int row)
 	{pattern "/stiffness_n_m", FIELD_REAL, at(stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN, "N/m",              \
 	 .text = "K, instead of stiffness_ratio", LATER},                                                     \
 	{pattern "/hertz_stiffness_n_m1_5", FIELD_REAL, at(hertz_stiffness), 0, 0, INFINITY, FIELD_OPEN_MIN,    \
-	 "N/m^1.5", .text = "K of F = K p^1.5 (default: such that the largest overlap at reference_speed_m_s equals that of the linear K)", LATER}, \
+	 "N/m^1.5", .text = "K of F = K p^1.5 (default: such that the largest overlap at reference_speed_m_s is the same as with the linear K)", LATER}, \
 	{pattern "/reference_speed_m_s", FIELD_REAL, at(reference_speed), 0.1, 0, INFINITY, FIELD_OPEN, "m/s", \
 	 .text = "approach speed at which K p^1.5 and K p have the same largest overlap", LATER},              \
 	{pattern "/restitution", FIELD_REAL, at(restitution), 0.6, 0, 1, FIELD_CLOSED, "",                    \
@@ -233,7 +233,7 @@ const struct field fields[] = {
 	{"/scene/excitation/peak_m_s2", FIELD_REAL, AT(scene.excitation.peak), 1, 0, INFINITY, FIELD_OPEN, "m/s2",
 	 .text = "peak ground acceleration", SCALED},
 	{"/scene/excitation/signals", FIELD_COUNT_OR_AUTO, AT(scene.excitation.signals), 5, 1, 100000, FIELD_CLOSED, "",
-	 .text = "number of random ground motions per scene; with 1 the indices are those of single responses, noise included; \"auto\": the number with which the intervals are narrowest for /design/runs or /design/until, from a pilot", RANDOM,
+	 .text = "number of random ground motions per scene; with 1 the indices include the noise of single responses; \"auto\": the number with which the intervals are narrowest for /design/runs or /design/until, from a pilot", RANDOM,
 	 .fixed = "every sample has the same number of signals"},
 	{"/scene/excitation/acceleration_m_s2", FIELD_LIST, 0, NAN, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
 	 .text = "ground accelerations of a record, one per time step", .types = " record ", .fixed = "the samples of a record are fixed data"},
@@ -352,9 +352,9 @@ const struct field fields[] = {
 	{"/design/until/half_width", FIELD_REAL, AT(design.until.half_width), NAN, 0, 1, FIELD_OPEN, "",
 	 .text = "largest accepted half-width of the 95 % intervals of all S1 and ST", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
-	 .text = "largest number of pounding runs; at least that of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
+	 .text = "largest number of pounding runs; at least the runs of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/goal", FIELD_CHOICE, AT(design.until.goal), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "width: all intervals of S1 and ST; order: only those of ST that overlap the interval of another input", .choice = goal_name, SENSITIVITY,
+	 .text = "width: all intervals of S1 and ST; order: only ST intervals that overlap another input's", .choice = goal_name, SENSITIVITY,
 	 WITH_SCENE, NOT_SCENE, LATER},
 	{"/design/until/output", FIELD_CHOICE, AT(design.until.output), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "output whose intervals count, one of `outputs`", .choice = until_output_name, SENSITIVITY, WITH_SCENE, NOT_SCENE, LATER},
@@ -396,7 +396,7 @@ const struct field fields[] = {
 	 SOLVED, WITH_SCENE, NOT_SCENE},
 
 	{"/spectrum", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "floor response spectrum of the left body, or of a floor of a row of buildings; in a sensitivity study that of output floor_spectrum", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	 .text = "floor response spectrum of the left body, or of a floor of a row of buildings; in a sensitivity study: settings of output floor_spectrum", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/frequencies_hz", FIELD_LIST, 0, 0, 1, STUDY_FREQUENCIES_MAX, FIELD_CLOSED, "",
 	 .text = "frequencies of the spectrum: a list, or an object {min, max, count} for logarithmic spacing; all different, each at most 100 / time_step_s; at most 64 in a sensitivity study, else at most 5000000 over all signals",
 	 SPECTRAL, WITH_SCENE, NOT_SCENE},
@@ -422,7 +422,7 @@ const struct field fields[] = {
 	 .text = "true: samples have the time histories of both oscillators, or of the floor at /spectrum/place and its contact with the right neighbor; at most 250000 ground motion samples over all signals", FLOORED, WITH_SCENE, NOT_SCENE},
 
 	{"/separation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "what is wanted of the gap needed", SEPARATION},
+	 .text = "settings of the gap needed: gaps, probabilities, intensity, hazard", SEPARATION},
 	{"/separation/gaps_m", FIELD_LIST, 0, 0, 1, POUND_GAPS_MAX, FIELD_CLOSED, "",
 	 .text = "gaps whose probability to pound is computed, ascending (default: up to 41 round ones)", SEPARATION},
 	{"/separation/gaps_m/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_CLOSED, "m",
@@ -434,7 +434,7 @@ const struct field fields[] = {
 	{"/separation/intensity", FIELD_TEXT, AT(separation.intensity), 0, 1, 200, FIELD_CLOSED, "",
 	 .text = "path of the sweep whose values are intensities of the ground motion: fragility curves are fitted over them", SEPARATION},
 	{"/separation/hazard", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "hazard curve: how often a year intensities are exceeded", SEPARATION},
+	 .text = "hazard curve: mean annual rates of exceedance of intensities", SEPARATION},
 	{"/separation/hazard/intensities", FIELD_LIST, 0, NAN, 2, POUND_STRIPES_MAX, FIELD_CLOSED, "",
 	 .text = "intensities in the unit of the sweep, ascending", SEPARATION},
 	{"/separation/hazard/intensities/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "",

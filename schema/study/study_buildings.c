@@ -413,8 +413,8 @@ static void check_gaps(const struct pound_study *study, struct problems *problem
 	for (int b = 0; asks && b < study->scene.n_buildings && study->scene.n_contacts == 0; b++)
 		if (storeys_sweep(study, b) && !problems_at(problems, "/scene/contacts")) {
 			problems_add(problems, "/scene/contacts",
-			             "must list the contacts, as each has numbers of its own and a sweep varies the "
-			             "number of storeys");
+			             "must list the contacts: their number would change with the swept number of "
+			             "storeys");
 			break;
 		}
 	if (separation && pound_row_contacts(&study->scene) == 0 && !problems_at(problems, "/scene/contact"))

@@ -507,7 +507,7 @@ static void check_group(const struct pound_study *study, int g, struct problems 
 	snprintf(pointer, sizeof pointer, "/groups/%d/of", g);
 	if (study->n_inputs > 0 && seen == pound_inputs_all(study->n_inputs) &&
 	    !problems_over(problems, "/inputs"))
-		problems_add(problems, pointer, "has every input, so its indices are 1: leave out one");
+		problems_add(problems, pointer, "must not contain every input: its indices would be 1");
 }
 
 static void check_groups(const struct pound_study *study, struct problems *problems)

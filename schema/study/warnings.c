@@ -76,7 +76,7 @@ static void look_at_masses(struct warnings *all, const struct pound_study *study
 		char pointer[48];
 		snprintf(pointer, sizeof pointer, "/scene%.39s", paths[i]);
 		if (!is_wall(study, i) && low[i] == 1 && high[i] == 1 && most >= MASSES_APART)
-			warn(all, pointer, "is 1 kg beside %.6g kg: was it left out?", most);
+			warn(all, pointer, "is 1 kg, the default, but another mass is %.6g kg: was it left out?", most);
 	}
 }
 
@@ -140,9 +140,79 @@ static void look_at_neighbors(struct warnings *all, const struct pound_study *st
 		for (int k = 0; k < scene->n_contacts; k++)
 			meet |= scene->contacts[k].left_building == b;
 		if (!meet)
-			warn(all, "/scene/contacts", "has none of buildings %d and %d: they pass through each other", b,
-			     b + 1);
+			warn(all, "/scene/contacts",
+			     "lists no contact between buildings %d and %d: they pass through each other", b, b + 1);
 	}
+}
+
+/* Height of a level above the ground [m]; NAN: the building has no heights. */
+static double elevation(const struct pound_building *building, double level)
+{
+	double sum = building->height.n > 0 ? 0 : NAN;
+	for (int i = 0; i < building->storeys && i < level; i++)
+		sum += fmin(1, level - i) * pound_each_of(&building->height, i);
+	return sum;
+}
+
+/* Contacts join levels by number: at other heights they are probably wrong. */
+static void look_at_levels(struct warnings *all, const struct pound_study *study)
+{
+	const struct pound_scene *scene = &study->scene;
+	const double most = 0.02; // levels are written with few digits
+	for (int k = 0; k < scene->n_contacts; k++) {
+		const struct pound_row_contact *contact = &scene->contacts[k];
+		const struct pound_building *left = &scene->buildings[contact->left_building], *right = left + 1;
+		const double low = elevation(left, contact->levels[0]), high = elevation(right, contact->levels[1]);
+		char pointer[48];
+		if (right->rigid_wall || !(fabs(low - high) > most * fmax(low, high)))
+			continue;
+		snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels", k);
+		warn(all, pointer, "are at heights of %.4g m and %.4g m", low, high);
+	}
+	for (int b = 0; scene->n_contacts == 0 && scene->contact.present && b + 1 < scene->n_buildings; b++) {
+		const struct pound_building *left = &scene->buildings[b], *right = left + 1;
+		for (int i = 1; !right->rigid_wall && i <= left->storeys && i <= right->storeys; i++) {
+			const double low = elevation(left, i), high = elevation(right, i);
+			if (!(fabs(low - high) > most * fmax(low, high)))
+				continue;
+			warn(all, "/scene/contacts",
+			     "is absent, so floors meet by number: floor %d is at %.4g m in building %d and at %.4g m in "
+			     "building %d",
+			     i, low, b, high, b + 1);
+			break;
+		}
+	}
+}
+
+/* Rayleigh damping takes the highest mode there is in place of a higher one. */
+static void look_at_modes(struct warnings *all, const struct pound_study *study)
+{
+	for (int b = 0; b < study->scene.n_buildings; b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const int *modes = building->damping_modes;
+		char pointer[48];
+		const bool absent = modes[0] == 1 && modes[1] == 3; // the default
+		if (building->rigid_wall || !pound_damping_takes_modes(building->damping) || absent ||
+		    modes[1] <= building->storeys)
+			continue;
+		snprintf(pointer, sizeof pointer, "/scene/buildings/%d/damping_modes", b);
+		warn(all, pointer, "has mode %d of a building of %d: the highest mode is used instead", modes[1],
+		     building->storeys);
+	}
+}
+
+/* A rigid impact has no finite acceleration. */
+static void look_at_rigid(struct warnings *all, const struct pound_study *study)
+{
+	const struct pound_scene *scene = &study->scene;
+	bool reads = study->kind == POUND_KIND_RESPONSE && scene->n_buildings > 0;
+	for (int k = 0; k < study->n_outputs; k++) {
+		const char *name = pound_output_name(study->outputs[k]);
+		reads |= strstr(name, "acceleration") && !strstr(name, "_free_");
+	}
+	if (reads && scene->contact.present && strcmp(pound_contact_name(scene->contact.model), "rigid") == 0)
+		warn(all, "/scene/contact/model",
+		     "is rigid: accelerations with pounding do not include the impacts, which are infinite");
 }
 
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
@@ -169,9 +239,8 @@ static void look_at_steps(struct warnings *all, const struct pound_study *study)
 		warn(all,
 		     study->scene.excitation.n_records ? "/scene/excitation/records"
 		                                       : "/scene/excitation/time_step_s",
-		     "%.4g s is more than a tenth of the shortest period, %.4g s: linear interpolation weakens what "
-		     "the body "
-		     "resounds to",
+		     "%.4g s is more than a tenth of the shortest period, %.4g s: linear interpolation weakens the "
+		     "ground motion near resonance",
 		     step, 1 / fastest);
 }
 
@@ -251,6 +320,41 @@ static void look_at_yield_drifts(struct warnings *all, const struct pound_study 
 	}
 }
 
+/* Demands of stories that are not near their target: yield drifts are set story by story, without a search. */
+static void look_at_demands(struct warnings *all, const struct pound_study *study,
+                            const struct pound_result *result)
+{
+	const double off = 1.1;
+	for (int b = 0; b < study->scene.n_buildings && study->kind == POUND_KIND_RESPONSE && !study->n_sweeps;
+	     b++) {
+		const struct pound_building *building = &study->scene.buildings[b];
+		const bool own = building->has_law;
+		const struct pound_law *law = own ? &building->law : &study->scene.law;
+		double least = INFINITY, most = 0;
+		char pointer[64];
+		if (is_wall(study, b) ||
+		    (own ? building->yield_drift.n > 0 : study->scene.law.yield_displacement > 0))
+			continue;
+		for (int cell = 0; cell < result->n_cells; cell++)
+			for (int s = 0; s < result->cells[cell].n_signals; s++) {
+				const struct pound_storey_response *storeys =
+				    &result->cells[cell].rows[s].storeys[pound_row_first(&study->scene, b)];
+				for (int i = 0; i < pound_row_storeys(&study->scene, b); i++) {
+					least = fmin(least, storeys[i].demand_free);
+					most = fmax(most, storeys[i].demand_free);
+				}
+			}
+		snprintf(pointer, sizeof pointer,
+		         own ? "/scene/buildings/%d/law/target_demand" : "/scene/law/target_demand", b);
+		if (most > 0 && (most > off * law->target_demand || off * least < law->target_demand))
+			warn(
+			    all, pointer,
+			    "is %.4g, but demands of building %d without pounding are %.3g to %.3g: yield drifts are set "
+			    "story by story, without a search; give yield_displacement_m",
+			    law->target_demand, b, least, most);
+	}
+}
+
 /* Writes the warnings of a study.
  *
  * Test     unit_warnings
@@ -262,12 +366,16 @@ void warnings_write(struct writer *w, const struct pound_study *study, const str
 		return;
 	look_at_masses(&all, study);
 	look_at_neighbors(&all, study);
+	look_at_levels(&all, study);
+	look_at_modes(&all, study);
+	look_at_rigid(&all, study);
 	look_at_steps(&all, study);
 	look_at_peaks(&all, study);
 	if (result) {
 		look_at_gap(&all, study, result);
 		look_at_yield(&all, study, result);
 		look_at_yield_drifts(&all, study, result);
+		look_at_demands(&all, study, result);
 	}
 	if (all.open)
 		writer_end(w);

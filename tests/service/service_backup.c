@@ -152,7 +152,7 @@ static void a_database_that_is_replaced_under_a_server_is_not_written_to(void **
 	check_report("database and lock removed, then replaced under a server: 4 of 4 studies refused with 503; "
 	             "put back: accepted");
 	char *log = program_file(service->log, NULL);
-	assert_non_null(strstr(log, "was removed or replaced while this server runs"));
+	assert_non_null(strstr(log, "was removed or replaced while the server runs"));
 	free(log);
 }
 

@@ -126,7 +126,7 @@ static void list_arguments_that_make_no_sense_are_400(void **state)
 	struct service *service = *state;
 	for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++)
 		problem_is(service_get(service, "/v1/studies?%s", arguments[i]), 400,
-		           strchr(arguments[i], '&') ? "twice" : "must be");
+		           strchr(arguments[i], '&') ? "occurs more than once" : "must be");
 	problem_is(service_get(service, "/v1/studies?limit=101"), 400,
 	           "limit must be a whole number in [1, 100]");
 	problem_is(service_get(service, "/v1/studies/0123456789abcdef/results?format="), 400, "must be");

@@ -32,9 +32,11 @@ static const struct {
 } cases[] = {
     {SCENE(BODIES, "", SHORT), NULL, NULL, false},
     {SCENE("{\"frequency_hz\": 2, \"mass_kg\": 2e5}, {\"frequency_hz\": 3}", "", SHORT),
-     "/scene/oscillators/1/mass_kg", "is 1 kg beside 200000 kg: was it left out?", false},
+     "/scene/oscillators/1/mass_kg", "is 1 kg, the default, but another mass is 200000 kg: was it left out?",
+     false},
     {SCENE("{\"frequency_hz\": 2}, {\"frequency_hz\": 3, \"mass_kg\": 5e4}", "", SHORT),
-     "/scene/oscillators/0/mass_kg", "is 1 kg beside 50000 kg: was it left out?", false},
+     "/scene/oscillators/0/mass_kg", "is 1 kg, the default, but another mass is 50000 kg: was it left out?",
+     false},
     {SCENE(BODIES, "", SHORT ", \"peak_m_s2\": 98.0665"), "/scene/excitation/peak_m_s2",
      "has a peak of 98.07 m/s2, 10 g: is its unit m/s2?", false},
     {SCENE(BODIES, "", SHORT ", \"peak_m_s2\": 0.005"), "/scene/excitation/peak_m_s2",
@@ -47,12 +49,12 @@ static const struct {
            "-2]}]"),
      "/scene/excitation", "has a peak of 40 m/s2, 4.079 g: is its unit m/s2?", false},
     {SCENE("{\"frequency_hz\": 2}, {\"frequency_hz\": 20}", "", SHORT), "/scene/excitation/time_step_s",
-     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens what the body "
-     "resounds to",
+     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens the ground "
+     "motion near resonance",
      false},
     {SCENE(BODIES, "\"gap_m\": 5", SHORT), "/scene/contact/gap_m", "no run has a contact", true},
     {ROW(THREE, "\"gap_m\": 0}, \"contacts\": [{\"levels\": [2, 2]}], \"law\": {\"type\": \"linear\"", SHORT),
-     "/scene/contacts", "has none of buildings 1 and 2: they pass through each other", false},
+     "/scene/contacts", "lists no contact between buildings 1 and 2: they pass through each other", false},
     {ROW(THREE, "\"gap_m\": 0", SHORT), NULL, NULL, false},
     // nothing is run with pounding
     {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT "}}}",
@@ -68,14 +70,39 @@ static const struct {
      NULL, NULL, false},
     {ROW("{\"frequency_hz\": 2}, {\"frequency_hz\": 3}", "", SHORT), NULL, NULL, false},
     {ROW("{\"frequency_hz\": 2, \"mass_kg\": [2e5, 3e5], \"storeys\": 2}, {\"frequency_hz\": 3}", "", SHORT),
-     "/scene/buildings/1/mass_kg", "is 1 kg beside 200000 kg: was it left out?", false},
+     "/scene/buildings/1/mass_kg", "is 1 kg, the default, but another mass is 200000 kg: was it left out?",
+     false},
     {ROW("{\"frequency_hz\": 2, \"storeys\": 8}, {\"frequency_hz\": 20}", "", SHORT),
      "/scene/excitation/time_step_s",
-     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens what the body "
-     "resounds to",
+     "0.01 s is more than a tenth of the shortest period, 0.05 s: linear interpolation weakens the ground "
+     "motion near resonance",
      false},
     {ROW("{\"frequency_hz\": 2}, {\"frequency_hz\": 3}", "\"gap_m\": 5", SHORT), "/scene/contacts",
      "no run has a contact", true},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
+         ", \"frequency_hz\": 3, \"height_m\": [3, 4]}",
+         "\"gap_m\": 0", SHORT),
+     "/scene/contacts",
+     "is absent, so floors meet by number: floor 2 is at 6 m in building 0 and at 7 m in building 1", false},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
+         ", \"frequency_hz\": 3, \"height_m\": 4}",
+         "\"gap_m\": 0}, \"contacts\": [{\"levels\": [1, 0.75]}, {\"levels\": [2, 2]}], \"law\": {\"type\": "
+         "\"linear\"",
+         SHORT),
+     "/scene/contacts/1/levels", "are at heights of 6 m and 8 m", false},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2, \"damping\": \"rayleigh\", \"damping_modes\": [1, 4]}, {" STOREYS
+         ", \"frequency_hz\": 3}",
+         "\"gap_m\": 0", SHORT),
+     "/scene/buildings/0/damping_modes", "has mode 4 of a building of 2: the highest mode is used instead",
+     false},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2}, {" STOREYS ", \"frequency_hz\": 3}",
+         "\"gap_m\": 0, \"model\": \"rigid\"", SHORT),
+     "/scene/contact/model",
+     "is rigid: accelerations with pounding do not include the impacts, which are infinite", false},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2, \"law\": {\"type\": \"elastoplastic\", \"target_demand\": 2}}, "
+         "{" STOREYS ", \"frequency_hz\": 3}",
+         "\"gap_m\": 0", SHORT),
+     "/scene/buildings/0/law/target_demand", "is 2, but demands of building 0 without pounding are ", true},
 };
 
 static struct reading *estimate_of(const struct pound_study *study)
