@@ -116,7 +116,8 @@ static void write_curve(struct writer *w, const struct pound_study *study,
 	if (study->separation.n_intensities)
 		result_estimate(w, "annual_rate", &curve->rate);
 	if (isnan(curve->median.value))
-		writer_text(w, "note", "no curve: needs pounding at a weaker intensity than some run without pounding");
+		writer_text(w, "note",
+		            "no curve: needs pounding at a weaker intensity than some run without pounding");
 	writer_end(w);
 }
 
@@ -132,7 +133,8 @@ static void write_hazard(struct writer *w, const struct pound_study *study,
 		write_interval(w, gap_names, &set->return_gap[k]);
 		if (isnan(set->return_gap[k].value))
 			writer_text(w, "note",
-			            "motions above the largest swept intensity are more frequent than this: add higher intensities");
+			            "motions above the largest swept intensity are more frequent than this: add higher "
+			            "intensities");
 		writer_end(w);
 	}
 	writer_end(w);

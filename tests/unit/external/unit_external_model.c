@@ -495,8 +495,7 @@ static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
 	    {"y,y.variance\n", "1,2\n", "1,1e121\n", "line 25, y.variance", "must be at most 1e+120, got 1e121"},
 	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in magnitude, got -1e200"},
-	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance",
-	     "has no matching output column"},
+	    {"z.variance\n", "1\n", "1\n", "line 1, z.variance", "has no matching output column"},
 	    {"p\n", "0.5\n", "0.5\n", "line 1",
 	     "has no output column; expected one per output, and NAME.variance where that is known, or "
 	     "NAME.replicate1, NAME.replicate2, ..."},
