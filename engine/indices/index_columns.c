@@ -472,13 +472,12 @@ static double rows_needed(double n, double behind)
 	return ceil(needed / digits) * digits;
 }
 
-static const double ROUNDING = 1e-9; /* of indices that are equal */
-
-/* Whether the interval of some first-order index lies above the interval of its total index. */
+/* Whether the interval of some first-order index lies above the interval of its total index, by more than typical sampling errors. */
 static bool above_total(const struct pound_indices *indices, int n_inputs)
 {
+	const double most = 0.05;
 	for (int j = 0; j < n_inputs; j++)
-		if (indices->index[POUND_S1][j].low > indices->index[POUND_ST][j].high + ROUNDING)
+		if (indices->index[POUND_S1][j].low > indices->index[POUND_ST][j].high + most)
 			return true;
 	return false;
 }
