@@ -15,7 +15,7 @@
 
 #include "engine/pound.h"
 
-enum { HTTP_CONFLICT = 409, FORM = 1 /* format version of an archive; a later version may have other files */ };
+enum { HTTP_CONFLICT = 409, FORM = 1 /* version of the archive format */ };
 
 static const char MANIFEST[] = "SHA256SUMS";
 
