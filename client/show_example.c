@@ -50,7 +50,7 @@ static enum outcome write_files(const char *name, const char *text, const char *
 {
 	struct problems problems;
 	const struct study_document document = {.text = text, .length = strlen(text)};
-	struct pound_study *study = study_from_document(&document, &problems); // NULL for a document without "scene"
+	struct pound_study *study = study_from_document(&document, &problems); // NULL: no "scene" in it
 	const bool suite = study && study->scene.excitation.n_records;
 	size_t n = document.length;
 	char *file = command_text("%s.json", name),

@@ -27,7 +27,7 @@ enum {
 	COLUMNS = 4,      /* inputs that fit side by side with output names of any length */
 	INPUT_WIDTH = 14, /* longest input name beside both indices and a bar */
 	CELL_WIDTH = 13,  /* " -0.16..-0.14", " 0.63 +-0.09" */
-	INDENT = 1,       /* so small that four inputs fit beside output names of 24 characters with both indices */
+	INDENT = 1,       /* small: four inputs fit beside both indices of names of 24 characters */
 	BOTH_WIDTH = 3,   /* " S1" */
 	CHART = 20,
 };

@@ -11,7 +11,7 @@
 enum {
 	CONNECT_S = 10, /* timeout for connecting */
 	SILENCE_S = 60, /* timeout without a received byte */
-	MADE_S = 3600,  /* the same while the server may be computing; TCP keepalive detects a lost machine earlier */
+	MADE_S = 3600,  /* the same while the server may compute; keepalive finds a lost machine earlier */
 };
 
 struct wire {

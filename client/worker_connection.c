@@ -24,7 +24,7 @@ enum {
 	PAUSE_MIN = 250,
 	PAUSE_MAX = 2000,
 	PAUSE_REFUSED_MAX = 60000,
-	LASTED = 10, /* [s] a connection of this length counts as successful, so the pause starts again at PAUSE_MIN */
+	LASTED = 10, /* [s] after a connection of this length the pause is PAUSE_MIN again */
 };
 
 /* Where to connect, and with what token. */
