@@ -46,7 +46,7 @@ struct baseline_result baseline_plain(const struct pound_task *task, int steps)
 				contacts += !touching;
 				touching = true;
 			} else {
-				// of the whole contact: at its end the dashpot pulls
+				// impulse of the whole contact: at its end the dashpot pulls, which reduces the impulse
 				impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 				touching = false;
 			}
@@ -59,7 +59,7 @@ struct baseline_result baseline_plain(const struct pound_task *task, int steps)
 			u_max = fabs(u1) > u_max ? fabs(u1) : u_max;
 		}
 	}
-	// a contact still open at the end counts with what it has
+	// a contact that has not ended counts with its impulse so far
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};
@@ -141,7 +141,7 @@ struct baseline_result baseline_tuned(const struct pound_task *task, int steps)
 			} else {
 				next1 = free.now[0][0] * u1 + free.before[0][0] * before1 + free.ground[0] * a;
 				next2 = free.now[1][1] * u2 + free.before[1][1] * before2 + free.ground[1] * a;
-				// of the whole contact: at its end the dashpot pulls
+				// impulse of the whole contact: at its end the dashpot pulls, which reduces the impulse
 				impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 				touching = false;
 			}
@@ -150,7 +150,7 @@ struct baseline_result baseline_tuned(const struct pound_task *task, int steps)
 			u_max = fabs(u1) > u_max ? fabs(u1) : u_max;
 		}
 	}
-	// a contact still open at the end counts with what it has
+	// a contact that has not ended counts with its impulse so far
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};

@@ -295,7 +295,7 @@ static void yield_displacements(const struct pound_scene *scene, const struct or
 		yield[body] = !has_yield        ? 0
 		              : !searched[body] ? law->yield_displacement
 		                                : (double)elastic.u_max[body] / reduction_factor(scene, body);
-		assert(!searched[body] || law->corrections <= 1); // more corrections are an iterative search, which the oracle does not have
+		assert(!searched[body] || law->corrections <= 1); // the oracle has no iterative search
 		corrected |= searched[body] && law->corrections == 1;
 	}
 	if (!corrected)
