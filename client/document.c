@@ -1,4 +1,4 @@
-/* document.c - reading a study document, and listing what is wrong with it. */
+/* document.c - reads study documents and lists their errors. */
 #include "client/document.h"
 
 #include "client/table.h"

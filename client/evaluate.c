@@ -2,7 +2,7 @@
  *
  * 1. The model's sizes must fit the study.
  * 2. Each sample, or replicate of one, is a run: taken from the journal, or requested from the server, several at a time.
- * 3. Outputs are placed by the number of their run, so the order of the answers does not matter; they become the CSV that
+ * 3. Outputs are stored by the number of their run, so the order of the answers does not matter, and written as the CSV that
  *    `pound indices` reads.
  *
  * Source   UM-Bridge, https://um-bridge-benchmarks.readthedocs.io, protocol 1.0 */

@@ -342,7 +342,7 @@ static void print_curves(const struct reading *result, const char *output)
 // clang-format off
 /* Sections of an output in print order. */
 static const struct {
-	const char *name; /* of its member in the JSON; names in RESULT_TABLES can be requested */
+	const char *name; /* member of the output in the JSON; the names in RESULT_TABLES can be requested with --table */
 	void (*print)(const struct reading *result, const char *output);
 } SECTIONS[] = {
 	{"inputs",            print_inputs},

@@ -1,4 +1,4 @@
-/* table.c - cells are kept as text; alignment is decided when all of them are known. */
+/* table.c - stores cells as text; widths and alignment are computed when all cells are known. */
 #include "client/table.h"
 
 #include "client/command.h"

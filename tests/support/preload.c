@@ -183,7 +183,7 @@ int clock_gettime(clockid_t clock, struct timespec *time)
 	return status;
 }
 
-/* The server prepares its first statement after it has checked its settings. */
+/* For a test, sets synchronous = NORMAL here, because the server prepares its statements after the check of its settings. */
 int sqlite3_prepare_v3(sqlite3 *db, const char *sql, int n, unsigned flags, sqlite3_stmt **statement,
                        const char **rest)
 {
