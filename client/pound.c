@@ -28,9 +28,9 @@ enum {
 
 struct command {
 	const char *name;
-	const char *arguments; /* as shown in the usage: "" for none, optional ones in brackets */
-	const char *takes;     /* keys of the options below */
-	bool terminal_table;   /* without --format, a table when stdout is a terminal */
+	const char *arguments;            /* as shown in the usage: "" for none, optional ones in brackets */
+	const char *takes;                /* keys of the options below */
+	bool terminal_table;              /* without --format, a table when stdout is a terminal */
 	const char *formats[FORMATS_MAX]; /* names that --format takes, the first is the default */
 	enum outcome (*run)(const struct options *);
 	const char *help; /* one line */
