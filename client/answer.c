@@ -10,7 +10,7 @@
 
 enum { HTTP_BAD_REQUEST = 400, HTTP_INVALID = 422 };
 
-/* Says what a reply other than a success means for the user. */
+/* Reports an error reply and returns its exit status. */
 static enum outcome refusal(const char *subject, const struct wire_reply *reply)
 {
 	struct reading *problem = strstr(reply->type, "json") ? reading_open(reply->body, reply->n_body) : NULL;
@@ -25,7 +25,7 @@ static enum outcome refusal(const char *subject, const struct wire_reply *reply)
 	                                                                          : OUTCOME_FAILED;
 }
 
-/* Turns what came of a request into an exit status, and says what went wrong. */
+/* Converts the outcome of a request into an exit status; reports a failure on stderr. */
 enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char *subject,
                           const struct wire_reply *reply)
 {
@@ -36,14 +36,14 @@ enum outcome answer_judge(const struct wire *wire, enum outcome sent, const char
 	return reply->status >= 200 && reply->status < 300 ? OUTCOME_OK : refusal(subject, reply);
 }
 
-/* Sends a request and judges the answer; the reply is to be freed whatever came. */
+/* Sends a request and checks the reply.  The caller frees the reply, also after a failure. */
 enum outcome answer_take(struct wire *wire, const struct wire_request *request, const char *subject,
                          struct wire_reply *reply)
 {
 	return answer_judge(wire, wire_send(wire, request, reply), subject, reply);
 }
 
-/* An id of the user's stays one segment of the path, whatever is in it. */
+/* Escapes the id that the user gave, so that it stays one segment of the path. */
 char *answer_path(struct wire *wire, const char *id, const char *rest)
 {
 	char *escaped = wire_escape(wire, id), *path = command_text("/v1/studies/%s%s", escaped, rest);
@@ -51,7 +51,7 @@ char *answer_path(struct wire *wire, const char *id, const char *rest)
 	return path;
 }
 
-/* Sends a request to /v1/studies/{id}{rest} and checks the answer. */
+/* Sends a request to /v1/studies/{id}{rest} and checks the reply. */
 enum outcome answer_about(struct wire *wire, struct wire_request request, const char *id, const char *rest,
                           struct wire_reply *reply)
 {

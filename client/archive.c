@@ -15,25 +15,25 @@
 
 #include "engine/pound.h"
 
-enum { HTTP_CONFLICT = 409, FORM = 1 /* of an archive; a later one may have other files */ };
+enum { HTTP_CONFLICT = 409, FORM = 1 /* version of the archive format */ };
 
 static const char MANIFEST[] = "SHA256SUMS";
 
 struct archive {
 	struct wire *wire;
 	const struct options *options;
-	char *folder; /* while it is being written */
+	char *folder; /* temporary name while the files are written */
 	FILE *manifest;
 };
 
-/* Says which file could not be written, and why. */
+/* Reports which file could not be written, and why (errno). */
 static enum outcome unwritten(const struct archive *archive, const char *name)
 {
 	command_complain("%s/%s: %s", archive->folder, name, strerror(errno));
 	return OUTCOME_FAILED;
 }
 
-/* Creates an empty file of the archive; NULL: see errno. */
+/* Creates an empty file of the archive; NULL: failed, see errno. */
 static FILE *file_new(const struct archive *archive, const char *name)
 {
 	char *path = command_text("%s/%s", archive->folder, name);
@@ -49,7 +49,7 @@ static bool file_done(FILE *file)
 	return fclose(file) == 0 && kept;
 }
 
-/* Writes a file and its line of the manifest, as sha256sum has them. */
+/* Writes a file, and its line of the manifest in the format of sha256sum. */
 static enum outcome put(struct archive *archive, const char *name, const char *bytes, size_t n)
 {
 	struct sha256_ctx hash;
@@ -66,7 +66,7 @@ static enum outcome put(struct archive *archive, const char *name, const char *b
 	return OUTCOME_OK;
 }
 
-/* Fetches what the study has at `rest`, and writes it; a study without that, when it may be, only says so. */
+/* Fetches /v1/studies/{id}{rest} and writes the body to a file.  Samples that the study does not have are only reported. */
 static enum outcome fetch(struct archive *archive, const char *rest, const char *type, const char *name)
 {
 	struct wire_reply reply;
@@ -88,7 +88,7 @@ static enum outcome fetch(struct archive *archive, const char *rest, const char 
 	return outcome;
 }
 
-/* Writes which programs made the archive, and which engine the result. */
+/* Writes the versions of the client, the server and the engine that computed the result. */
 static enum outcome versions(struct archive *archive, const char *engine)
 {
 	struct wire_reply reply;
@@ -113,7 +113,7 @@ static enum outcome versions(struct archive *archive, const char *engine)
 	return outcome;
 }
 
-/* Writes all files except the result, which is written already. */
+/* Writes all files of the archive. */
 static enum outcome fill(struct archive *archive, const struct wire_reply *result)
 {
 	const bool npy = strcmp(archive->options->format, "npy") == 0;
@@ -173,7 +173,7 @@ static enum outcome folder_make(struct archive *archive, const char *folder, con
 
 /* `pound archive ID [FOLDER]`: the folder is complete, or does not exist.
  *
- * Returns  value   OUTCOME_STUDY_FAILED when the study will never have a result, OUTCOME_FAILED when it has none yet
+ * Returns  value   OUTCOME_STUDY_FAILED: the study failed or was canceled; OUTCOME_FAILED: it has no result yet
  * Test     client_archive: an_archive_has_everything_and_its_checksums_hold
  */
 enum outcome archive_make(const struct options *options)

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A member's name as written in a JSON Pointer: ~ is ~0, / is ~1. */
+/* Escapes a member name for a JSON Pointer (RFC 6901): ~ becomes ~0, / becomes ~1. */
 static void pointer_token(char *token, size_t size, const char *name)
 {
 	size_t n = 0;

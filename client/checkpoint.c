@@ -31,7 +31,7 @@ struct checkpoint {
 	int file;
 	struct pound_run *run;
 	char head[160];
-	pthread_mutex_t lock; /* of the file's end */
+	pthread_mutex_t lock; /* serializes appends to the file */
 	int error;            /* errno of the first write that failed */
 	bool unsynced;
 };
@@ -50,7 +50,7 @@ static void digest_of(const struct checkpoint *c, const struct record *record, c
 
 /* Restores the complete records.
  *
- * Returns  value   where the file is to end; -1: no memory
+ * Returns  value   offset behind the last complete record; -1: no memory
  */
 static off_t records_read(struct checkpoint *c, checkpoint_restored *restored, void *to)
 {
@@ -80,20 +80,20 @@ static off_t records_read(struct checkpoint *c, checkpoint_restored *restored, v
 	return at;
 }
 
-/* NULL, or what is wrong. */
+/* Locks the file and reads it.  Returns NULL, or the error. */
 static const char *file_take(struct checkpoint *c, checkpoint_restored *restored, void *to)
 {
 	char head[sizeof c->head] = "";
 	const size_t n = strlen(c->head);
 	struct stat about;
-	// a second program on the same file would write between
+	// two programs that append to the same file would mix their records
 	const struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
 	if (c->file < 0 || fstat(c->file, &about) != 0)
 		return strerror(errno);
 	if (fcntl(c->file, F_SETLK, &whole) != 0)
 		return "another program uses it";
 	const ssize_t got = pread(c->file, head, n, 0);
-	// one that was interrupted at its very start has a part of the head
+	// a program that was interrupted while it wrote the head left only its beginning
 	if (about.st_size < (off_t)n && got >= 0 && memcmp(head, c->head, (size_t)got) == 0) {
 		if (ftruncate(c->file, 0) != 0 || pwrite(c->file, c->head, n, 0) != (ssize_t)n)
 			return strerror(errno);
@@ -111,8 +111,8 @@ static const char *file_take(struct checkpoint *c, checkpoint_restored *restored
 
 /* Opens a checkpoint.
  *
- * Given    path      made if it is not there
- *          restored  called with `to` and the number of each block that need not run
+ * Given    path      created if it does not exist
+ *          restored  called with `to` and the number of each restored block
  * Test     client_worker: a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_bytes
  */
 struct checkpoint *checkpoint_open(const char *path, const struct pound_study *study, struct pound_run *run,
@@ -145,7 +145,7 @@ void checkpoint_add(struct checkpoint *c, int block, const double *values)
 	const struct iovec parts[] = {{&record, sizeof record}, {(void *)(uintptr_t)values, size}};
 	digest_of(c, &record, values, record.digest);
 	pthread_mutex_lock(&c->lock);
-	// after a record that is not whole none counts
+	// records behind an incomplete one cannot be read, so stop writing after a failed write
 	if (!c->error && writev(c->file, parts, 2) != (ssize_t)(sizeof record + size))
 		c->error = errno ? errno : ENOSPC;
 	c->unsynced = true;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Ends the program when there is no memory: nothing it has begun is worth keeping. */
+/* Ends the program when an allocation has failed: no unfinished work is worth saving. */
 void *command_sure(void *memory)
 {
 	if (!memory) {
@@ -23,7 +23,7 @@ static char *text_of(const char *format, va_list arguments)
 	return command_sure(vasprintf(&text, format, arguments) < 0 ? NULL : text);
 }
 
-/* Puts a text together, however long it gets.
+/* Formats a text of any length.
  *
  * Memory   allocates; the caller frees
  */
@@ -46,11 +46,11 @@ char *command_append(char *text, const char *format, ...)
 	return whole;
 }
 
-/* Keeps text from other people off the controls of a terminal. */
+/* Replaces control characters, so that text from others cannot control the terminal. */
 void command_tame(char *text)
 {
 	for (unsigned char *c = (unsigned char *)text; *c; c++) {
-		// C0 and DEL, and the C1 controls, which UTF-8 writes c2 80 .. c2 9f
+		// C0 controls, DEL, and C1 controls, which UTF-8 encodes as c2 80 .. c2 9f
 		if (*c < ' ' || *c == 0x7f)
 			*c = '?';
 		else if (*c == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0)
@@ -58,7 +58,7 @@ void command_tame(char *text)
 	}
 }
 
-/* Says one line on stderr, harmless to a terminal whatever the texts in it hold. */
+/* Prints one line on stderr, with control characters replaced. */
 void command_complain(const char *format, ...)
 {
 	va_list arguments;

@@ -19,7 +19,7 @@
 enum {
 	REDRAW_MS = 100,
 	SYNC_EVERY = 10,    /* redraws between two syncs of the checkpoint */
-	LATE_LOOK_MS = 500, /* between two looks whether a block that is out is late */
+	LATE_LOOK_MS = 500, /* between two checks for assigned blocks that are late */
 };
 
 struct pool {
@@ -28,14 +28,14 @@ struct pool {
 	struct checkpoint *checkpoint;
 	struct coordinator *coordinator;
 	struct coordinator_study study;
-	pthread_mutex_t lock; /* of what follows */
+	pthread_mutex_t lock; /* protects the members below */
 	pthread_cond_t changed;
 	struct assignment blocks;
-	int n_blocks, n_done;     /* to run now, done of them */
-	int next, n_reductions;   /* reduction to take, ... */
-	bool reducing;            /* ... instead of blocks */
+	int n_blocks, n_done;     /* blocks of the present design, finished blocks among them */
+	int next, n_reductions;   /* next reduction, number of reductions ... */
+	bool reducing;            /* ... true: threads run reductions, false: blocks */
 	int64_t runs_done;        /* pounding runs in the finished blocks */
-	enum pound_status status; /* first one that is not POUND_OK */
+	enum pound_status status; /* first status other than POUND_OK */
 	sem_t finished;           /* posted by each thread at its end */
 };
 
@@ -52,7 +52,7 @@ static double seconds(void)
 	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
-/* Under the lock. */
+/* Records the end of a block.  The caller holds the lock. */
 static void block_end(struct pool *pool, int block, enum pound_status status)
 {
 	if (status == POUND_OK) {
@@ -63,7 +63,7 @@ static void block_end(struct pool *pool, int block, enum pound_status status)
 	pthread_cond_broadcast(&pool->changed);
 }
 
-/* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: none now.  Under the lock. */
+/* Takes the next block for a thread (ASSIGNMENT_HERE) or a worker group, -1: none at present.  The caller holds the lock. */
 static int block_take(struct pool *pool, int taker)
 {
 	const double now = seconds();
@@ -73,7 +73,7 @@ static int block_take(struct pool *pool, int taker)
 	return block;
 }
 
-/* The next step of a thread, -1: there will be none.  Under the lock. */
+/* Returns the next block or reduction for a thread, waiting for it; -1: the phase has ended.  The caller holds the lock. */
 static int step_take(struct pool *pool)
 {
 	if (pool->status != POUND_OK)
@@ -117,7 +117,7 @@ static void *member_work(void *of)
 	return NULL;
 }
 
-/* ---- what the coordinator asks ---- */
+/* ---- callbacks of the coordinator ---- */
 
 static bool remote_wanted(void *of)
 {
@@ -208,9 +208,9 @@ static bool remote_start(struct pool *pool)
 	return pool->coordinator;
 }
 
-/* ---- one phase after the other ---- */
+/* ---- phases: blocks, reductions, growth of the design ---- */
 
-/* Watches n threads until all have ended. */
+/* Waits until n threads have ended; meanwhile draws the progress bar, syncs the checkpoint and checks for Ctrl-C. */
 static void watch(struct pool *pool, int n, double start)
 {
 	const double total = (double)study_runs(pool->of->study);
@@ -273,7 +273,7 @@ static int done_of(const struct pool *pool, int n)
 
 /* Computes a run.
  *
- * Status   POUND_STOPPED   interrupted, or the checkpoint is refused
+ * Status   POUND_STOPPED   interrupted, or the checkpoint cannot be used
  * Test     client_worker: every_example_gives_the_same_bytes_with_any_number_of_groups
  */
 enum pound_status compute_run(struct compute *of)
@@ -289,7 +289,7 @@ enum pound_status compute_run(struct compute *of)
 	if (of->checkpoint)
 		pool.checkpoint = checkpoint_open(of->checkpoint, of->study, of->run, restored, &pool);
 	of->refused = of->checkpoint && !pool.checkpoint;
-	pool.reducing = true; // nothing is taken yet
+	pool.reducing = true; // no blocks may be taken yet
 	if (of->refused)
 		pool.status = POUND_STOPPED;
 	else if (!remote_start(&pool))

@@ -1,4 +1,4 @@
-/* document.c - reading a study document, and listing what is wrong with it. */
+/* document.c - reads study documents and lists their errors. */
 #include "client/document.h"
 
 #include "client/table.h"
@@ -14,13 +14,13 @@
 
 enum { HTTP_INVALID = 422 };
 
-/* The path, or words for "-". */
+/* The path for messages; "standard input" for "-". */
 const char *document_name(const char *path)
 {
 	return strcmp(path, "-") == 0 ? "standard input" : path;
 }
 
-/* The whole file, or standard input for "-", ended by 0; NULL: errno says why. */
+/* Reads a whole file, or standard input for "-", and terminates it with 0; NULL: failed, see errno. */
 static char *file_read(const char *path, size_t *length)
 {
 	FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
@@ -43,9 +43,9 @@ static char *file_read(const char *path, size_t *length)
 	return text;
 }
 
-/* Reads a study document, whatever is in it.
+/* Reads a study document without checking its contents.
  *
- * Memory   allocates; NULL when it cannot be read, said on stderr
+ * Memory   allocates; NULL: cannot be read, reported on stderr
  */
 char *document_read(const char *path, size_t *length)
 {
@@ -55,7 +55,7 @@ char *document_read(const char *path, size_t *length)
 	return text;
 }
 
-/* The bytes of a file that a document names, its path from the folder of the document. */
+/* Reads a file that a document names; a relative path starts at the folder of the document. */
 static char *named_read(const void *with, const struct study_source *of, size_t *length,
                         char why[STUDY_WHY_SIZE])
 {
@@ -75,11 +75,11 @@ static char *named_read(const void *with, const struct study_source *of, size_t 
 	return text;
 }
 
-/* Reads a document, and one that names files of recorded ground motions as others may have it.
+/* Reads a document.  If it names files of recorded ground motions, `copy` makes a document that others can read without them.
  *
- * Given    copy     -   what that is
- * Returns  value    -   as document_read gives it, if it names none
- *          study    -   for study_free; NULL: it names none, or is not as it should be
+ * Given    copy     -   study_inline or study_name_hashes
+ * Returns  value    -   the document unchanged if it names no files
+ *          study    -   for study_free; NULL: the document names no files, or is invalid
  */
 static char *read_with_files(const char *path, size_t *length, enum outcome *outcome,
                              char *(*copy)(const struct study_document *, const struct pound_study *,
@@ -105,11 +105,11 @@ static char *read_with_files(const char *path, size_t *length, enum outcome *out
 	return copied;
 }
 
-/* Reads a document, and puts in the samples of the files of recorded ground motions that it names.
+/* Reads a document, and replaces names of files of recorded ground motions by the samples in the files.
  *
- * Returns  value    -   as document_read gives it, if it names none
- *          outcome  -   OUTCOME_USAGE: a file, or anything else of such a document, is not as it should be
- * Memory   allocates; NULL: said on stderr why
+ * Returns  value    -   the document unchanged if it names no files
+ *          outcome  -   OUTCOME_USAGE: the document names files, and it or one of the files is invalid
+ * Memory   allocates; NULL: failed, reported on stderr
  * Test     client_suite: a_suite_is_read_from_files_beside_the_study
  */
 char *document_whole(const char *path, size_t *length, enum outcome *outcome)
@@ -121,9 +121,9 @@ char *document_whole(const char *path, size_t *length, enum outcome *outcome)
 	return whole;
 }
 
-/* The same with the SHA-256 of these files beside their names, for a server that has the files.
+/* Like document_whole, but adds the SHA-256 of each file to its name, for a server that stores the files.
  *
- * Returns  study    -   of which document_file gives the files, for study_free; NULL: it names none
+ * Returns  study    -   its files are read by document_file; for study_free; NULL: the document names no files
  * Test     client_suite: a_server_gives_the_same_bytes
  */
 char *document_hashed(const char *path, size_t *length, enum outcome *outcome, struct pound_study **study)
@@ -147,7 +147,7 @@ struct pound_study *document_study(const char *path, const char *text, size_t le
 	return study;
 }
 
-/* The bytes of a file that a document names. */
+/* Reads a file that a document names; reports a failure on stderr. */
 char *document_file(const char *path, const struct study_source *of, size_t *length)
 {
 	char why[STUDY_WHY_SIZE];
@@ -157,7 +157,7 @@ char *document_file(const char *path, const struct study_source *of, size_t *len
 	return bytes;
 }
 
-/* Lists the problems of a document, in the order of the reply. */
+/* Prints the errors of a problem document (RFC 9457), in its order. */
 void document_complain(const char *subject, const struct reading *problem)
 {
 	int n = reading_count(problem, "/errors");
@@ -186,7 +186,7 @@ void document_complain(const char *subject, const struct reading *problem)
 		command_complain("  and %.0f more", more);
 }
 
-/* Says what is wrong with a document in the words of the server. */
+/* Reports the errors of a document with the same texts as the server. */
 enum outcome document_reject(const char *path, const struct problems *problems)
 {
 	if (problems->status == PROBLEMS_NOMEM) {

@@ -2,7 +2,7 @@
  *
  * 1. The model's sizes must fit the study.
  * 2. Each sample, or replicate of one, is a run: taken from the journal, or requested from the server, several at a time.
- * 3. Outputs are placed by the number of their run, so the order of the answers does not matter; they become the CSV that
+ * 3. Outputs are stored by the number of their run, so the order of the answers does not matter, and written as the CSV that
  *    `pound indices` reads.
  *
  * Source   UM-Bridge, https://um-bridge-benchmarks.readthedocs.io, protocol 1.0 */
@@ -25,10 +25,10 @@
 #include <time.h>
 
 enum {
-	TRIES = 4,          /* of a run whose answer was lost */
-	PAUSE_MS = 250,     /* before the second; four times as long before each other one */
-	WAIT_MS = 1000,     /* for an answer, until the bar is drawn again */
-	VECTORS_MAX = 1000, /* of a model's inputs or outputs */
+	TRIES = 4,          /* sends of a run before a lost answer is an error */
+	PAUSE_MS = 250,     /* before the second send; each later pause is four times as long */
+	WAIT_MS = 1000,     /* longest wait for an answer before the progress bar is redrawn */
+	VECTORS_MAX = 1000, /* most vectors of a model's inputs or outputs */
 	HTTP_OK = 200,
 	HTTP_BAD_REQUEST = 400,
 	HTTP_FAILED = 500,
@@ -36,18 +36,18 @@ enum {
 	HTTP_GATEWAY_TIMEOUT = 504,
 };
 
-/* Vectors of a model. */
+/* Sizes of the input or output vectors of a model. */
 struct sizes {
-	int n, all; /* vectors; elements of all */
+	int n, all; /* number of vectors; sum of their sizes */
 	int size[VECTORS_MAX];
 };
 
-/* A request under way, or one that is to be repeated. */
+/* A request that was sent, or will be sent again. */
 struct job {
 	long run; /* -1: none */
 	int tries;
 	bool sent;
-	double due; /* [s] when it is sent again */
+	double due; /* [s] time of the next send */
 	char *body;
 };
 
@@ -57,7 +57,7 @@ struct evaluation {
 	struct pound_run *design;
 	const char *url;
 	char *name;   /* of the model */
-	char *config; /* object, with a place for the seed behind its last member */
+	char *config; /* JSON object; with --seed-member it ends at the value of that member */
 	struct sizes inputs, outputs;
 	char **names; /* of the outputs  (outputs.all) */
 	long n, done; /* runs: rows x samples x replicates */
@@ -66,9 +66,9 @@ struct evaluation {
 	bool *known;    /* (n) */
 	struct journal *journal;
 	long failed;
-	char failure[200]; /* why the first one failed */
-	double began;      /* [s] */
-	long begun;        /* runs that were known then */
+	char failure[200]; /* reason of the first failed run */
+	double began;      /* [s] time of the first request */
+	long begun;        /* runs known at that time, from the journal */
 };
 
 static double now(void)
@@ -80,7 +80,7 @@ static double now(void)
 
 /* ---- the model ---- */
 
-/* The error in an answer: its type and message, or its status. */
+/* Reports an error reply: its type and message, or its HTTP status. */
 static void complain_of(const struct evaluation *e, const struct wire_reply *reply)
 {
 	struct reading *r = reading_open(reply->body, reply->n_body);
@@ -93,9 +93,9 @@ static void complain_of(const struct evaluation *e, const struct wire_reply *rep
 	reading_close(r);
 }
 
-/* Asks for a JSON object.
+/* Requests a JSON object.
  *
- * Returns  value    for reading_close; NULL: complained about, with the outcome
+ * Returns  value    for reading_close; NULL: failed, reported on stderr
  */
 static struct reading *ask(const struct evaluation *e, const char *path, const char *body,
                            enum outcome *outcome)
@@ -123,7 +123,7 @@ static struct reading *ask(const struct evaluation *e, const char *path, const c
 	return r;
 }
 
-/* Complains about what the user gave, or the model has. */
+/* Reports an error in the arguments or the model. */
 #define MISTAKEN(...) (command_complain(__VA_ARGS__), OUTCOME_USAGE)
 
 static enum outcome find_model(struct evaluation *e)
@@ -139,13 +139,13 @@ static enum outcome find_model(struct evaluation *e)
 	else if (n == 0 && !wanted)
 		outcome = MISTAKEN("%s: has no model", e->url);
 	else
-		// a name that is not listed may be one all the same
+		// a server may have models that it does not list
 		e->name = command_sure(strdup(wanted ? wanted : reading_text(r, "/models/0")));
 	reading_close(r);
 	return outcome;
 }
 
-/* The name of the model and its configuration, as the members that begin every request; without the closing brace. */
+/* The beginning of every request: the members for the name and configuration of the model, without the closing brace. */
 static char *request_head(const struct evaluation *e, long run)
 {
 	struct writer w;
@@ -188,7 +188,7 @@ static enum outcome read_sizes(const struct evaluation *e, const char *path, con
 	return outcome;
 }
 
-/* Reads the configuration, which must be a JSON object, and prepares its member for the seed. */
+/* Checks that the configuration is a JSON object; with --seed-member, opens that member at its end. */
 static enum outcome take_config(struct evaluation *e)
 {
 	const char *text = e->options->evaluate.config ? e->options->evaluate.config : "{}",
@@ -253,7 +253,7 @@ static enum outcome name_outputs(struct evaluation *e)
 
 /* ---- runs ---- */
 
-/* The request of a run: the inputs of its sample, cut into the model's vectors. */
+/* The request body of a run: the inputs of its sample, split into the model's vectors. */
 static char *run_body(const struct evaluation *e, long run)
 {
 	struct writer w;
@@ -297,8 +297,8 @@ static void note_from_journal(void *to, long run, const double *values)
 
 /* Reads the outputs of an answer.
  *
- * Returns  values   NAN each when the run has failed
- *          value    false: the answer does not have the model's sizes, complained about
+ * Returns  values   all NAN if the run failed
+ *          value    false: the vectors do not have the model's sizes; reported on stderr
  */
 static bool outputs_read(struct evaluation *e, const struct wire_reply *reply, double *values)
 {
@@ -323,7 +323,7 @@ static bool outputs_read(struct evaluation *e, const struct wire_reply *reply, d
 	return fits;
 }
 
-/* Whether an answer is the result of a run, not an answer of a proxy or of a server without this model. */
+/* Whether a reply is the result or failure of a run, not an error of a proxy or of a server without this model. */
 static bool is_of_run(const struct wire_reply *reply)
 {
 	if (reply->status != HTTP_BAD_REQUEST)
@@ -337,7 +337,7 @@ static bool is_of_run(const struct wire_reply *reply)
 
 /* Takes the reply to a job's run.
  *
- * Returns  value   OUTCOME_OK: the run is known, or to be tried again
+ * Returns  value   OUTCOME_OK: the run has ended, or will be sent again
  */
 static enum outcome job_end(struct evaluation *e, struct job *job, enum outcome outcome,
                             const struct wire_reply *reply, const char *failure)
@@ -392,7 +392,7 @@ static void jobs_begin(struct evaluation *e, struct wire_jobs *wires, struct job
 	}
 }
 
-/* Milliseconds until a job is to be sent again, at most WAIT_MS. */
+/* Milliseconds until the next repeated send, at most WAIT_MS. */
 static int until_due(const struct evaluation *e, const struct job *jobs)
 {
 	double wait = 1e-3 * WAIT_MS, time = now();
@@ -446,7 +446,7 @@ static void put_value(struct writer *w, double value, char end)
 	writer_raw(w, &end, 1);
 }
 
-/* Mean and variance of that mean over the replicates of a sample; NAN: one of them has failed. */
+/* Mean over the replicates of a sample, and the variance of this mean; NAN: a replicate failed. */
 static void replicates_mean(const struct evaluation *e, long sample, int output, double *mean,
                             double *variance)
 {
@@ -509,7 +509,7 @@ static enum outcome show_indices(const struct evaluation *e)
 	return outcome;
 }
 
-/* What a journal is of. */
+/* First line of a journal: identifies design, model and settings. */
 static char *journal_head(const struct evaluation *e)
 {
 	char hash[STUDY_HASH_SIZE] = "";
@@ -547,7 +547,7 @@ static enum outcome evaluate(struct evaluation *e)
 	return outcome == OUTCOME_OK ? show_indices(e) : outcome;
 }
 
-/* `pound evaluate --model URL STUDY.json`: the indices of a model that another server has.
+/* `pound evaluate --model URL STUDY.json`: the sensitivity indices of a model on a UM-Bridge server.
  *
  * Test     client_evaluate
  */
@@ -558,7 +558,7 @@ enum outcome evaluate_model(const struct options *options)
 	if (!study)
 		return outcome;
 	struct evaluation *e = command_sure(calloc(1, sizeof *e));
-	study->n_outputs = 0; // only the design is wanted of the run
+	study->n_outputs = 0; // the run is only used for its design
 	*e = (struct evaluation){.options = options,
 	                         .study = study,
 	                         .url = options->evaluate.model,

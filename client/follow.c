@@ -14,7 +14,7 @@ enum {
 	HTTP_UNAVAILABLE = 503,
 	PAUSE_MS_MIN = 50,
 	PAUSE_MS_MAX = 1000,
-	PATIENCE_MS = 20000, /* with a server that has answered before and is away now */
+	PATIENCE_MS = 20000, /* how long to retry when a server that has answered does not answer any more */
 };
 
 static void pause_ms(int ms)
@@ -22,7 +22,7 @@ static void pause_ms(int ms)
 	nanosleep(&(struct timespec){.tv_sec = ms / 1000, .tv_nsec = ms % 1000 * 1000000L}, NULL);
 }
 
-/* Whether a study has ended, and how. */
+/* Whether a study has ended; then sets the outcome. */
 static bool ended(const struct reading *status, enum outcome *outcome)
 {
 	static const struct {
@@ -42,7 +42,7 @@ static bool ended(const struct reading *status, enum outcome *outcome)
 	return false;
 }
 
-/* Says why a study has no result. */
+/* Reports why a study has no result. */
 static void complain(const char *id, const struct reading *status)
 {
 	const char *state = reading_text(status, "/status"), *error = reading_text(status, "/error");
@@ -50,7 +50,7 @@ static void complain(const char *id, const struct reading *status)
 	                 error ? error : "");
 }
 
-/* Takes one answer about a study: true when there is nothing more to wait for. */
+/* Handles one reply with the status of a study.  Returns true when waiting is over: the study ended, or the reply is an error. */
 static bool look(const struct wire *wire, enum outcome sent, const char *id, const struct wire_reply *reply,
                  enum outcome *outcome)
 {
@@ -75,16 +75,16 @@ static bool look(const struct wire *wire, enum outcome sent, const char *id, con
 	return over;
 }
 
-/* Watches a study to its end.
+/* Polls a study until it has ended.
  *
- * Memory   last holds the last answer whatever the value; the caller frees it
+ * Memory   last holds the last reply, also after a failure; the caller frees it
  */
 enum outcome follow_study(struct wire *wire, const char *id, struct wire_reply *last)
 {
 	char *path = answer_path(wire, id, "");
 	const struct wire_request request = {.method = "GET", .path = path};
 	enum outcome outcome = OUTCOME_OK;
-	// a server that has never answered gets no patience
+	// no retries until the server has answered once
 	int wait_ms = PAUSE_MS_MIN, host_pauses_ms = PATIENCE_MS;
 	*last = (struct wire_reply){0};
 	for (bool over = false; !over;) {

@@ -9,7 +9,7 @@
  *     twice the rows leave 0.71 of it, 4000 rows half of it
  *     300 runs checked, differences 1e-14 (median) to 2e-13: no index moves by over 3e-15
  *
- * and then a table for each other list of estimates, with their names in the JSON. */
+ * and then a table for each other list of estimates, with the names that the estimates have in the JSON. */
 #include "client/indices_table.h"
 
 #include "client/cell.h"
@@ -28,7 +28,7 @@ enum { INDENT = 2 };
 
 /* ---- one estimate ---- */
 
-/* " 0.412 [ 0.351,  0.472]" of an estimate and its interval, or " 0.412 [0.35,0.47]"; "" where it has no value. */
+/* An estimate and its interval: exact " 0.412 [ 0.351,  0.472]", else " 0.412 [0.35,0.47]"; "" if all are missing. */
 static void interval(char *text, size_t size, const struct reading *result, const char *of, const char *index,
                      bool exact)
 {
@@ -44,7 +44,7 @@ static void interval(char *text, size_t size, const struct reading *result, cons
 		*text = 0;
 }
 
-/* A bar; nothing where there is no share, as an empty bar is a share of 0. */
+/* A bar for a share; empty text if the share is missing, because an empty bar means 0. */
 static void chart(char text[CHART + 3], double share)
 {
 	*text = 0;
@@ -57,7 +57,7 @@ static void chart(char text[CHART + 3], double share)
 	strcpy(text + 1 + CHART, "|");
 }
 
-/* The indices to quote. */
+/* S1 and ST of all inputs, the indices to quote. */
 static void print_quoted(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
@@ -85,8 +85,8 @@ static void print_quoted(const struct reading *result, const char *output)
 struct estimates {
 	const struct reading *result;
 	const char *at;    /* its JSON Pointer in the result */
-	const char *about; /* what its elements are */
-	int n_rows;        /* 0: it is an object */
+	const char *about; /* head of the first column: what an element describes */
+	int n_rows;        /* elements of the list; 0: an object */
 	int n;
 	const char *names[ESTIMATES_MAX]; /* (n) */
 };
@@ -99,7 +99,7 @@ static void row_path(const struct estimates *of, int row, char path[PATH_SIZE])
 		snprintf(path, PATH_SIZE, "%s", of->at);
 }
 
-/* Whether a number has a value in any row, and an interval: then it is an estimate. */
+/* Whether a member is an estimate: in some row it has a value and an interval. */
 static bool is_estimate(const struct estimates *of, const char *name)
 {
 	char path[PATH_SIZE];
@@ -112,7 +112,7 @@ static bool is_estimate(const struct estimates *of, const char *name)
 	return false;
 }
 
-/* Finds what there is, but for names between spaces in `but`. */
+/* Finds the names of all estimates except the space-separated names in `but`. */
 static void estimates_find(struct estimates *of, const char *but)
 {
 	char row[PATH_SIZE];
@@ -128,7 +128,7 @@ static void estimates_find(struct estimates *of, const char *but)
 	}
 }
 
-/* What a row is about: its name, or the names of its inputs; for free. */
+/* Label of a row: its name, or the names of its inputs; the caller frees it. */
 static char *row_label(const struct estimates *of, int row)
 {
 	char path[PATH_SIZE];
@@ -140,7 +140,7 @@ static char *row_label(const struct estimates *of, int row)
 	return label;
 }
 
-/* A table of all estimates of a list, but for names between spaces in `but`. */
+/* Prints a table of all estimates of a list except the space-separated names in `but`. */
 static void print_estimates(const struct reading *result, const char *output, const char *list,
                             const char *about, const char *but)
 {
@@ -168,7 +168,7 @@ static void print_estimates(const struct reading *result, const char *output, co
 	table_close(table);
 }
 
-/* ---- what is said about an output ---- */
+/* ---- notes and accuracy of an output ---- */
 
 static void print_note(const char *note)
 {
@@ -177,7 +177,7 @@ static void print_note(const char *note)
 	free(sentence);
 }
 
-/* What there is to say about the indices of an input. */
+/* Prints the note of an input, if any. */
 static void print_input_note(const struct reading *result, const char *output, int j)
 {
 	const char *name = reading_text(result, "%s/inputs/%d/name", output, j);
@@ -190,7 +190,7 @@ static void print_input_note(const struct reading *result, const char *output, i
 	free(of_input);
 }
 
-/* How an ordinate of a floor spectrum goes with the largest impulse. */
+/* Correlation of a floor spectrum ordinate with the largest impulse. */
 static void print_correlation(const struct reading *result, const char *output)
 {
 	double correlation = reading_number(result, "%s/impulse_correlation", output);
@@ -216,7 +216,7 @@ static void print_output_head(const struct reading *result, const char *output)
 	print_correlation(result, output);
 }
 
-/* The widest half of the intervals of one number of rows. */
+/* Largest half-width of the intervals of S1 and ST at one number of rows. */
 static double widest(const struct reading *result, const char *accuracy, int level)
 {
 	static const char *const halves[] = {"S1_half_widths", "ST_half_widths"};
@@ -227,7 +227,7 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 	return most;
 }
 
-/* How far the indices of an output may be off. */
+/* Sampling and integration error of the indices of an output. */
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];
@@ -276,7 +276,7 @@ static void print_inputs(const struct reading *result, const char *output)
 static void print_others(const struct reading *result, const char *output)
 {
 	print_estimates(result, output, "inputs", "input", " S1 ST ");
-	// an input of a model of one's own has no path
+	// inputs of an external model have no path
 	const bool own = !reading_text(result, "%s/inputs/0/path", output);
 	print_estimates(result, output, "excitation", own ? "noise of replicates" : "noise of signals", "");
 }
@@ -308,7 +308,7 @@ static void print_ratios(const struct reading *result, const char *output)
 		print_note(reading_text(result, "%s/note", ratios));
 }
 
-/* A curve in digits: 0 where it is lowest, 9 where it is highest. */
+/* Conditional means, each curve as digits: 0 is its lowest value, 9 its highest. */
 static void print_curves(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {
@@ -340,9 +340,9 @@ static void print_curves(const struct reading *result, const char *output)
 }
 
 // clang-format off
-/* What there is of an output, in the order in which it is printed. */
+/* Sections of an output in print order. */
 static const struct {
-	const char *name; /* of its member in the JSON; names in RESULT_TABLES can be requested */
+	const char *name; /* member of the output in the JSON; the names in RESULT_TABLES can be requested with --table */
 	void (*print)(const struct reading *result, const char *output);
 } SECTIONS[] = {
 	{"inputs",            print_inputs},
@@ -355,7 +355,7 @@ static const struct {
 };
 // clang-format on
 
-/* Prints one section of every output, or all. */
+/* Prints the named section of every output; NULL: all sections. */
 static void print_outputs(const struct reading *result, const char *name)
 {
 	char cell[PATH_SIZE / 4], output[PATH_SIZE / 2];
@@ -384,7 +384,7 @@ static void print_outputs(const struct reading *result, const char *name)
 
 /* ---- the design ---- */
 
-/* An intermediate result says so first. */
+/* Marks an intermediate result. */
 static void print_partial(const struct reading *result)
 {
 	if (!reading_has(result, "/partial"))
@@ -395,7 +395,7 @@ static void print_partial(const struct reading *result)
 	putchar('\n');
 }
 
-/* How many signals a row has, and what other numbers of them would have given. */
+/* The chosen number of signals per row, and the expected accuracy of other choices. */
 static void print_split(const struct reading *result)
 {
 	static const char *const columns[] = {"signals", "rows", "runs", "half_width", "bias", NULL};
@@ -438,7 +438,7 @@ static void print_stopping(const struct reading *result)
 		print_growth(result);
 }
 
-/* What more and fewer rows cost. */
+/* CPU time at several numbers of rows. */
 static void print_cost(const struct reading *result)
 {
 	const char *before = "\n  CPU time: ";
@@ -473,7 +473,7 @@ void indices_print(const struct reading *result)
 	print_cost(result);
 }
 
-/* The checks of samples that were drawn elsewhere, and their indices. */
+/* Indices from given samples, after the checks of the samples. */
 void given_data_print(const struct reading *result)
 {
 	const double missing = reading_number(result, "/given/samples_missing");
@@ -493,7 +493,7 @@ void given_data_print(const struct reading *result)
 	print_outputs(result, NULL);
 }
 
-/* Whether any output of any cell has a section. */
+/* Whether the section exists in any output of any cell. */
 static bool section_anywhere(const struct reading *result, const char *name)
 {
 	bool is = false, any = false;

@@ -14,12 +14,12 @@
 
 struct journal {
 	const char *path;
-	int fd;         /* -1: there is no journal */
+	int fd;         /* -1: no journal is kept */
 	int n;          /* outputs of a run */
 	double *values; /* (n) */
 };
 
-/* Reads a line of a run.  false: it is none. */
+/* Reads a line `run,value,...`.  false: the line has another form. */
 static bool line_read(const struct journal *journal, char *line, long *run)
 {
 	char *end;
@@ -34,7 +34,7 @@ static bool line_read(const struct journal *journal, char *line, long *run)
 	return is && *end == '\0';
 }
 
-/* Reads all whole lines, and cuts off what is behind the last one.  false: it is the journal of something else. */
+/* Reads all complete lines, and truncates an incomplete last line.  false: the journal of another evaluation, or damaged. */
 static bool lines_read(struct journal *journal, const char *head, journal_reader *reader, void *to)
 {
 	char *line = NULL;

@@ -48,7 +48,7 @@ enum outcome model_design(const struct options *options)
 	struct pound_study *study = model_study(options->argument, &outcome);
 	if (!study)
 		return outcome;
-	study->n_outputs = 0; // only the design is wanted of the run
+	study->n_outputs = 0; // the run is only used for its design
 	struct pound_run *run = pound_run_create(study, 1);
 	outcome = run ? OUTCOME_OK : no_memory();
 	const int rows = run ? pound_run_rows(run) : 0;
@@ -59,7 +59,7 @@ enum outcome model_design(const struct options *options)
 		if (!lines)
 			outcome = no_memory();
 		else if (fwrite(lines, 1, n, stdout) < n)
-			outcome = OUTCOME_FAILED; // main says why
+			outcome = OUTCOME_FAILED; // main reports the reason
 		free(lines);
 	}
 	pound_run_free(run);
@@ -67,7 +67,7 @@ enum outcome model_design(const struct options *options)
 	return outcome;
 }
 
-/* A table of a file; false: complained about, with the outcome. */
+/* Reads a CSV table from a file; false: failed, reported on stderr. */
 static bool table_read(struct given_table *table, enum given_role role, const char *path,
                        enum outcome *outcome)
 {
@@ -84,7 +84,7 @@ static bool table_read(struct given_table *table, enum given_role role, const ch
 	return *outcome == OUTCOME_OK;
 }
 
-/* `pound indices --given X.csv Y.csv`: the indices of samples without a design.
+/* `pound indices --given X.csv Y.csv`: indices from given samples, without a design.
  *
  * Test     client_model: given_samples_have_indices_without_a_study
  */
@@ -105,7 +105,7 @@ static enum outcome given_print(const struct options *options)
 	return outcome;
 }
 
-/* `pound indices STUDY.json Y.csv`: the indices of outputs computed elsewhere.
+/* `pound indices STUDY.json Y.csv`: indices of the outputs of an external model.
  *
  * Test     client_model: indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv
  */
@@ -128,7 +128,7 @@ enum outcome model_print_indices(const struct options *options)
 	char *csv = study ? document_read(options->second, &n_csv) : NULL;
 	if (csv) {
 		char *json = model_indices(study, csv, n_csv, &problems, &n);
-		// a JSON Pointer is into the study, any other place is in the outputs
+		// a location that is a JSON Pointer is in the study, any other location is in the outputs
 		const bool of_study = !json && problems.n > 0 && problems.list[0].pointer[0] == '/';
 		outcome = json ? show_result(json, n, options)
 		               : document_reject(of_study ? options->argument : options->second, &problems);

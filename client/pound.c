@@ -28,9 +28,9 @@ enum {
 
 struct command {
 	const char *name;
-	const char *arguments; /* as usage shows them, "" for none, in brackets when it may be left out */
-	const char *takes;     /* keys of the options below */
-	bool terminal_table;   /* without --format, a table when stdout is a terminal */
+	const char *arguments;            /* as shown in the usage: "" for none, optional ones in brackets */
+	const char *takes;                /* keys of the options below */
+	bool terminal_table;              /* without --format, a table when stdout is a terminal */
 	const char *formats[FORMATS_MAX]; /* names that --format takes, the first is the default */
 	enum outcome (*run)(const struct options *);
 	const char *help; /* one line */
@@ -40,7 +40,7 @@ struct command {
 #define TABLE(name) " " #name
 #define TABLES      RESULT_TABLES(TABLE)
 
-/* Keys of the options that choose what a figure shows: none is printable, so that none is a short option. */
+/* Keys of the options for figures: not printable, so that these options have no short form. */
 enum {
 	FIGURE_KEY_BEFORE,
 #define X(name, values, lowest, highest, text) FIGURE_KEY_##name,
@@ -48,7 +48,7 @@ enum {
 #undef X
 	    FIGURE_KEYS_END
 };
-/* cell and signal among them */
+/* MOTION_KEYS: the keys of cell and signal */
 #define MOTION_KEYS "\1\11"
 #define FIGURE_KEYS "\1\2\3\4\5\6\7\10\11\12\13\14"
 
@@ -412,7 +412,7 @@ static enum outcome command_run(const struct command *command, int argc, char **
 	                .threads = cores(),
 	                .evaluate.jobs = JOBS},
 	};
-	// an empty list, unlike none, is memory that argp's help does not give back
+	// NULL instead of an empty list, with which argp's help leaks memory
 	struct argp argp = {.options = taken->key ? taken : NULL,
 	                    .parser = take_option,
 	                    .args_doc = command->arguments,

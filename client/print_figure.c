@@ -44,7 +44,7 @@ static enum outcome plot_file(const struct options *options)
 	return outcome;
 }
 
-/* The choices as a query, on the heap. */
+/* The options of the figure as a URL query; the caller frees it. */
 static char *query_of(struct wire *wire, const struct options *options)
 {
 	char *query = command_text("?partial=%s", options->partial ? "true" : "false");
@@ -88,7 +88,7 @@ static enum outcome plot_fetched(const struct options *options)
 
 /* `pound plot FIGURE RESULT|ID` prints SVG; `pound plot --names`.
  *
- * Returns  value   OUTCOME_USAGE: no such figure, or a choice that it does not take
+ * Returns  value   OUTCOME_USAGE: no such figure, or an option that the figure does not accept
  * Test     client_figure: a_figure_of_a_file_has_the_bytes_of_the_server
  */
 enum outcome plot_figure(const struct options *options)

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What a page is made of, each on the heap; NULL: not known. */
+/* The documents that a page shows, allocated; NULL: not available. */
 struct parts {
 	char *result, *study, *samples;
 	size_t n_result, n_study, n_samples;
@@ -37,7 +37,7 @@ static void parts_free(struct parts *parts)
 	free(parts->samples);
 }
 
-/* Whether the document is the one that the result is of, by the hash of its meaning. */
+/* Checks by the study hash that the document belongs to the result. */
 static enum outcome expect_study_of(const struct parts *parts, const struct options *options)
 {
 	struct reading *result = reading_open(parts->result, parts->n_result);
@@ -79,7 +79,7 @@ static enum outcome report_files(const struct options *options)
 	return outcome;
 }
 
-/* One document of a study; the bytes go to *text. */
+/* Fetches one document of a study into *text. */
 static enum outcome fetch(struct wire *wire, const struct options *options, const char *rest,
                           const char *type, char **text, size_t *n)
 {

@@ -24,11 +24,11 @@ static int line_width(void)
 	int width = WIDTH_DEFAULT;
 	if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
 		width = size.ws_col;
-	// the last column stays free: writing there would wrap the line
+	// writing in the last column would wrap the line
 	return (width < WIDTH_MAX ? width : WIDTH_MAX) - 1;
 }
 
-/* A number as one of runs; 0 where it is none. */
+/* Converts a number of runs; NAN, negative and too large numbers give 0. */
 static int64_t count_of(double n)
 {
 	return n >= 0.0 && n < 1e18 ? (int64_t)n : 0;
@@ -52,7 +52,7 @@ static void left(char *out, size_t size, double seconds)
 		snprintf(out, size, "  %ld:%02ld left", s / 60, s % 60);
 }
 
-/* Draws the bar, or only the percentage where there is no room for one.
+/* Draws the bar; on a narrow terminal only the percentage.
  *
  * Given    done, total   pounding runs
  *          left_s   s    time left, < 0: unknown
@@ -62,7 +62,7 @@ void bar_draw(double done, double total, double left_s)
 	if (!on_terminal())
 		return;
 	char tail[120], n_done[32], n_total[32], time[40] = "";
-	double part = total > 0.0 ? fmin(fmax(done / total, 0.0), 1.0) : 0.0; // 0 for a NAN
+	double part = total > 0.0 ? fmin(fmax(done / total, 0.0), 1.0) : 0.0; // fmax and fmin turn a NAN into 0
 	grouped(n_done, sizeof n_done, count_of(done));
 	grouped(n_total, sizeof n_total, count_of(total));
 	if (left_s >= 0.0 && left_s < 1e7)
@@ -84,7 +84,7 @@ void bar_draw(double done, double total, double left_s)
 	fprintf(stderr, "\r\033[K[%s]%s", row, tail);
 }
 
-/* Leaves the line empty for what comes next. */
+/* Clears the line. */
 void bar_clear(void)
 {
 	if (on_terminal())

@@ -13,11 +13,11 @@
 
 enum { HTTP_CONFLICT = 409 };
 
-// one column of the list of studies: its head, and the member of the status object
+// columns of the list of studies, named by the members of the status object
 static const struct {
 	const char *member;
-	enum { TEXT, NUMBER, YES } type; // YES: "yes" where it is true
-	bool more;                       // not in a table of studies, which has a line for each
+	enum { TEXT, NUMBER, YES } type; // YES: prints "yes" if true
+	bool more;                       // left out of a table with several studies, to keep one line per study
 } COLUMNS[] = {
     {"id", TEXT, false},
     {"status", TEXT, false},
@@ -76,12 +76,12 @@ static enum outcome print_studies(const struct wire_reply *reply, const char *fo
 	return OUTCOME_OK;
 }
 
-/* What is asked about the study named on the command line, and what is printed of the answer. */
+/* A request about the study named on the command line, and the function that prints the reply. */
 struct question {
 	const char *method, *rest, *type;
 	bool failed; /* HTTP 409 may be due to a study that has failed */
 	enum outcome (*print)(const struct wire_reply *reply, const struct options *options);
-	bool made; /* the server computes the answer */
+	bool made; /* the server may compute before it answers: long timeout */
 };
 
 static enum outcome ask(const struct options *options, const struct question *question)
@@ -131,13 +131,13 @@ enum outcome query_status(const struct options *options)
 	return ask(options, &(struct question){"GET", "", NULL, false, print_status, false});
 }
 
-/* `pound cancel ID`: prints the status the study then has. */
+/* `pound cancel ID`: prints the new status of the study. */
 enum outcome query_cancel(const struct options *options)
 {
 	return ask(options, &(struct question){"POST", "/cancel", NULL, false, print_status, false});
 }
 
-/* `pound delete ID`: silent. */
+/* `pound delete ID`: prints nothing. */
 enum outcome query_delete(const struct options *options)
 {
 	return ask(options, &(struct question){"DELETE", "", NULL, false, print_nothing, false});
@@ -156,7 +156,7 @@ enum outcome query_wait(const struct options *options)
 	return outcome;
 }
 
-/* `pound list`: one page. */
+/* `pound list`: prints one page of the list. */
 enum outcome query_list(const struct options *options)
 {
 	struct wire *wire = wire_open(options->url);
@@ -184,7 +184,7 @@ enum outcome query_list(const struct options *options)
 	return outcome;
 }
 
-// media types to ask for; a table is made from JSON
+// media type for each format; a table is made from JSON
 static const struct {
 	const char *format, *type;
 } TYPES[] = {
@@ -201,20 +201,20 @@ static const char *type_of(const char *format)
 	return TYPES[i].type;
 }
 
-/* `pound results ID`: printed as it comes, or as a table.
+/* `pound results ID`: prints the reply unchanged, or as a table.
  *
- * Returns  value   OUTCOME_STUDY_FAILED when there will never be a result, OUTCOME_FAILED when there is none yet
+ * Returns  value   OUTCOME_STUDY_FAILED: the study failed or was canceled; OUTCOME_FAILED: it has no result yet
  */
 enum outcome query_results(const struct options *options)
 {
-	// CSV is the server's own, but for a table: that is made here, as `pound run' does
+	// without --table the server makes the CSV; with --table this program does, as in `pound run'
 	bool csv = strcmp(options->format, "csv") == 0 && !options->table;
 	return ask(options, &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
 	                                       type_of(csv ? "csv" : "json"), true,
 	                                       csv ? print_bytes : print_result, options->partial});
 }
 
-/* `pound samples ID`: printed as they come. */
+/* `pound samples ID`: prints the reply unchanged. */
 enum outcome query_samples(const struct options *options)
 {
 	return ask(options,

@@ -39,14 +39,14 @@ static double thread_cpu(void)
 	return seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
-/* Writes every sample of a sensitivity study, the histories of a study of spectra, or the contacts of responses, to a file. */
+/* Writes the samples of a sensitivity study, the histories of floor spectra, or the contacts of responses to a file. */
 static enum outcome write_samples(const struct pound_study *study, struct pound_run *run, const char *path)
 {
 	const char *end = strrchr(path, '.');
 	bool npy = end && strcmp(end, ".npy") == 0;
 	size_t n;
 	const char *reason = NULL;
-	pound_run_stop_by(run, &interrupted); // the threads that looked for that have ended
+	pound_run_stop_by(run, &interrupted); // the threads that polled for a stop have ended
 	char *bytes = histories_exist(study)
 	                  ? (npy ? histories_to_npy : histories_to_csv)(study, run, -1, &n, &reason)
 	                  : (npy ? samples_to_npy : samples_to_csv)(study, run, &n);
@@ -63,7 +63,7 @@ static enum outcome write_samples(const struct pound_study *study, struct pound_
 	return written ? OUTCOME_OK : OUTCOME_FAILED;
 }
 
-/* Whether a file can be written, as far as can be known without creating it: a study may take hours before it is. */
+/* Whether a file can probably be written, without creating it: checked before a study that may run for hours. */
 static bool writable(const char *path)
 {
 	char folder[PATH_MAX];

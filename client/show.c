@@ -15,8 +15,8 @@
 #include <string.h>
 
 enum {
-	PEAKS = 12,       /* of a spectrum, the first ones; all are in the JSON */
-	CSV_COLUMNS = 32, /* of a table by name, the first ones; all are in the CSV */
+	PEAKS = 12,       /* shown peaks of a spectrum; the JSON has all */
+	CSV_COLUMNS = 32, /* shown columns of a named table; the CSV has all */
 	CSV_CELL = 256,
 };
 
@@ -62,7 +62,7 @@ static void print_pairs(const struct reading *result, const char *at)
 	print_outputs(result, at);
 }
 
-/* The storeys of a row and the floors above them, means over the signals, which the JSON has each. */
+/* The storeys of a row and the floors above them, as means over the signals; the JSON has each signal. */
 static void print_storeys(const struct reading *result, const char *at)
 {
 	static const char *const columns[] = {"building", "storey",   "drift_m", "free_m", "drift/h",
@@ -145,7 +145,7 @@ static void print_responses(const struct reading *result, const char *at)
 	print_outputs(result, at);
 }
 
-/* A response without a sweep is its one cell itself. */
+/* A response without a sweep has no list of cells: the result itself is the cell. */
 static void response(const struct reading *result)
 {
 	char at[32];
@@ -159,7 +159,7 @@ static void response(const struct reading *result)
 	}
 }
 
-/* An error to two digits. */
+/* Rounds to two significant digits. */
 static double two_digits(double value)
 {
 	char text[32];
@@ -167,7 +167,7 @@ static double two_digits(double value)
 	return isfinite(value) ? strtod(text, NULL) : NAN;
 }
 
-/* What a solver was run with: its step or its tolerance; NULL: neither. */
+/* The time step or tolerance of a solver as text; NULL: it has neither. */
 static const char *setting_of(const struct reading *result, int row, char text[32])
 {
 	const double step = reading_number(result, "/rows/%d/step_s", row);
@@ -181,7 +181,7 @@ static const char *setting_of(const struct reading *result, int row, char text[3
 	return text;
 }
 
-/* Whether a solver is run with time steps, else with tolerances. */
+/* Whether a solver was run with time steps; otherwise with tolerances. */
 static bool is_stepped(const struct reading *result, const char *method)
 {
 	bool stepped = false;
@@ -193,7 +193,7 @@ static bool is_stepped(const struct reading *result, const char *method)
 	return stepped;
 }
 
-/* How fast the errors of each solver fall.  A tolerance is no step: the exponent of its error is no order. */
+/* Exponent of the error of each solver.  For a time step it is the observed order; for a tolerance it is not an order. */
 static void print_orders(const struct reading *result)
 {
 	const char *method;
@@ -203,7 +203,7 @@ static void print_orders(const struct reading *result)
 		if (!isfinite(order))
 			continue;
 		const bool stepped = is_stepped(result, method);
-		// errors that do not fall with the setting are roundings: they have no order
+		// an exponent near 0: only rounding errors remain, which have no order
 		const char *setting = stepped ? "step" : "tolerance", *end = stepped ? ", the observed order" : "";
 		char *line =
 		    fabs(order) < 0.005
@@ -214,7 +214,7 @@ static void print_orders(const struct reading *result)
 	}
 }
 
-/* The mean errors of each setting; the largest ones and the order from row to row are in the JSON and the CSV. */
+/* Mean errors of each setting; the JSON and CSV also have the largest errors and the order between rows. */
 static void convergence(const struct reading *result)
 {
 	static const char *const columns[] = {"method",  "setting", "failed", "u_max",   "demand",
@@ -246,7 +246,7 @@ static void convergence(const struct reading *result)
 	print_orders(result);
 }
 
-/* The mean spectra, and the peaks of the first beside what Eq. (21) has there. */
+/* The mean spectra, and the peaks of the first spectrum with the values of Eq. (21) at their frequencies. */
 static void floor_spectrum(const struct reading *result)
 {
 	static const char *const columns[] = {"f_hz", "pounding",   "p16",         "p84",         "impact_only",
@@ -283,12 +283,12 @@ static void floor_spectrum(const struct reading *result)
 		       reading_number(result, "/accuracy/spectra/%d/relative_error_max", row));
 }
 
-/* A table of a result of separation: an array and, column by column, what each element has. */
+/* A table of a separation result: an array, and the member of its elements that each column shows. */
 struct list {
-	const char *members; /* the array, from the cell or the curves on */
+	const char *members; /* path of the array below the cell, contact or fragility */
 	struct {
 		const char *head, *member;
-	} columns[9]; /* ends with NULLs; the first may be a text */
+	} columns[9]; /* ends with NULL */
 };
 
 static const struct list NEEDS[] = {
@@ -332,7 +332,7 @@ static void print_list(const struct reading *result, const char *at, const struc
 	table_close(table);
 }
 
-/* How wide the gap of a cell has to be, and what rules ask for. */
+/* The gap needed in a cell or at a contact, and the gaps that design rules require. */
 static void print_needs(const struct reading *result, const char *at)
 {
 	printf("\ngap needed: mean %.4g m, deviation %.4g m, largest %.4g m of %.0f runs\n",
@@ -346,7 +346,7 @@ static void print_needs(const struct reading *result, const char *at)
 	}
 }
 
-/* The same at a contact of a row. */
+/* The gap needed at a contact of a row of buildings. */
 static void print_contact(const struct reading *result, const char *at)
 {
 	const double left = reading_number(result, "%s/left_building", at);
@@ -378,7 +378,7 @@ static void print_fragility(const struct reading *result)
 	}
 }
 
-/* The gaps needed; with inputs their indices, too. */
+/* The gaps needed; in a study with inputs also the sensitivity indices. */
 static void separation(const struct reading *result)
 {
 	char at[32];
@@ -404,7 +404,7 @@ static void separation(const struct reading *result)
 	}
 }
 
-/* What was asked and what was run, and why not all of it. */
+/* Requested and executed work, failures, and work left out with the reason. */
 static void print_work(const struct reading *result)
 {
 	static const char *const columns[] = {"work", "asked", "run", NULL};
@@ -436,7 +436,7 @@ static void print_work(const struct reading *result)
 	}
 }
 
-/* What is valid in the study and probably not meant. */
+/* Warnings about settings that are valid but probably not intended. */
 static void print_warnings(const struct reading *result)
 {
 	const char *what;
@@ -449,13 +449,13 @@ static void print_warnings(const struct reading *result)
 	}
 }
 
-/* What study it is, and what it took. */
+/* Name, kind and seed of the study, and its computing time. */
 static void print_head(const struct reading *result, const char *kind)
 {
 	const char *name = reading_text(result, "/name"), *seed = reading_text(result, "/seed");
 	if (name)
 		table_prose(0, name);
-	// a seed from 2^53 on is a text
+	// a seed of 2^53 or more is a string, because a JSON number would round it
 	printf("%s study, seed ", kind);
 	if (seed)
 		table_say(seed);
@@ -471,7 +471,7 @@ static void print_head(const struct reading *result, const char *kind)
 static const struct {
 	const char *kind;
 	void (*print)(const struct reading *);
-	bool alone; /* without what study it is and the work */
+	bool alone; /* print without print_head and print_work */
 } KINDS[] = {
 	{"sensitivity",    summary_print,    true},
 	{"given_data",     given_data_print, true},
@@ -482,7 +482,7 @@ static const struct {
 };
 // clang-format on
 
-/* Prints a result by its kind. */
+/* Prints a result with the function of its kind; false: unknown kind. */
 static bool print_kind(const struct reading *result, const char *kind)
 {
 	for (size_t i = 0; i < sizeof KINDS / sizeof KINDS[0]; i++)
@@ -498,7 +498,7 @@ static bool print_kind(const struct reading *result, const char *kind)
 	return false;
 }
 
-/* The heads of CSV; how many of them say what a line is about. */
+/* Reads the header of CSV.  n_keys: number of leading columns that identify a line (sweep paths, contact). */
 static int heads_of(const char *csv, const char *end, char heads[CSV_COLUMNS + 1][CSV_CELL],
                     const char *names[CSV_COLUMNS + 1], int *n_keys)
 {
@@ -514,7 +514,7 @@ static int heads_of(const char *csv, const char *end, char heads[CSV_COLUMNS + 1
 	return n;
 }
 
-/* A table of CSV, its numbers to a few digits. */
+/* Prints CSV as a table, with numbers rounded for reading. */
 static void print_csv(const char *csv, const char *end)
 {
 	char heads[CSV_COLUMNS + 1][CSV_CELL], cell[CSV_CELL], sign, *rest;
@@ -540,7 +540,7 @@ static void print_csv(const char *csv, const char *end)
 	table_close(table);
 }
 
-/* One table of a result by its name. */
+/* Prints the named table of a result; false: the result does not have it. */
 static bool print_named(const struct reading *result, const char *json, size_t length, const char *name)
 {
 	size_t n;
@@ -553,7 +553,7 @@ static bool print_named(const struct reading *result, const char *json, size_t l
 	return n > 0;
 }
 
-/* All of a result. */
+/* Prints everything in a result. */
 static bool print_all(const struct reading *result, const char *kind)
 {
 	if (strcmp(kind, "sensitivity") != 0) {
@@ -603,7 +603,7 @@ static enum outcome show_csv(const char *json, size_t length, const char *table)
 	return shown ? OUTCOME_OK : OUTCOME_FAILED;
 }
 
-/* Prints a result in the format that the options name, or one table of it. */
+/* Prints a result, or its table named by --table, in the format of --format. */
 enum outcome show_result(const char *json, size_t n, const struct options *options)
 {
 	if (strcmp(options->format, "table") == 0)

@@ -12,7 +12,7 @@
 
 static const char EXAMPLE_DEFAULT[] = "paper";
 
-/* Writes a file that is not there yet; false: said why not. */
+/* Writes a new file; false: failed or it exists, reported on stderr. */
 static bool put(const char *folder, const char *name, const char *bytes, size_t n)
 {
 	char *path = command_text("%s/%s", folder, name);
@@ -26,7 +26,7 @@ static bool put(const char *folder, const char *name, const char *bytes, size_t 
 	return written;
 }
 
-/* The records of a suite as files. */
+/* Writes the records of a suite as files. */
 static bool put_records(const char *folder, const struct pound_excitation *suite)
 {
 	for (int k = 0; k < suite->n_records; k++) {
@@ -50,7 +50,7 @@ static enum outcome write_files(const char *name, const char *text, const char *
 {
 	struct problems problems;
 	const struct study_document document = {.text = text, .length = strlen(text)};
-	struct pound_study *study = study_from_document(&document, &problems); // NULL: a design without a scene
+	struct pound_study *study = study_from_document(&document, &problems); // NULL: no "scene" in it
 	const bool suite = study && study->scene.excitation.n_records;
 	size_t n = document.length;
 	char *file = command_text("%s.json", name),

@@ -13,13 +13,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* one row of the table: a file */
+/* a file: one row of the table */
 struct shown {
 	const char *path;
 	struct record record;
 	struct pound_motion_measures measures;
-	double *psa;  /* pseudo-accelerations at the periods asked [m/s2]  (n_periods) */
-	double *fine; /* the same on the band-limited interpolation at twice the rate */
+	double *psa;  /* pseudo-accelerations at the requested periods [m/s2]  (n_periods) */
+	double *fine; /* pseudo-accelerations with band-limited interpolation to twice the sampling rate [m/s2] */
 };
 
 static double samples(const struct shown *shown)
@@ -62,7 +62,7 @@ static double significant(const struct shown *shown)
 	return shown->measures.duration;
 }
 
-/* What is shown of a file in addition to its path, format and title. */
+/* Columns besides path, format, unit and title. */
 static const struct {
 	const char *name;
 	double (*value)(const struct shown *shown);
@@ -90,7 +90,7 @@ static enum outcome read_file(const struct options *options, struct shown *shown
 	return OUTCOME_OK;
 }
 
-/* What linear interpolation between the samples costs an oscillator: as the result of a suite has it. */
+/* Relative error of the pseudo-acceleration due to linear interpolation between samples, defined as in the result of a suite. */
 static double interpolation(const struct shown *shown, int k)
 {
 	return shown->fine[k] > 0 ? shown->psa[k] / shown->fine[k] - 1 : 0;
@@ -161,7 +161,7 @@ static void print_tables(int n, const struct shown *shown, const struct periods 
 	table_close(table);
 }
 
-/* One file and its spectra; what is wrong with it is reported. */
+/* Reads a file and computes its spectra; reports errors on stderr. */
 static enum outcome take_file(const struct options *options, const struct periods *periods,
                               struct shown *shown)
 {
@@ -184,10 +184,10 @@ static void free_file(struct shown *shown)
 	free(shown->fine);
 }
 
-/* `pound record FILE...`: what was read, its measures, and with --periods its response spectrum.  Files that are no records are reported,
- * and the others shown.
+/* `pound record FILE...`: format, motion measures, and with --periods the response spectrum of each file.  Invalid files are reported
+ * on stderr, and the others shown.
  *
- * Returns  value   OUTCOME_USAGE: a file is no record
+ * Returns  value   OUTCOME_USAGE: a file is not a valid record
  * Test     client_record: files_are_shown_with_their_measures
  */
 enum outcome record_show(const struct options *options)

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Follows a study that was just accepted, its id already printed. */
+/* Follows a study that was just accepted; flushes its printed id first. */
 static enum outcome follow(struct wire *wire, const char *id)
 {
 	struct wire_reply last;
@@ -17,7 +17,7 @@ static enum outcome follow(struct wire *wire, const char *id)
 	return outcome;
 }
 
-/* Sends the files that a study names and the server does not have; the same file once.
+/* Sends the files that a study names, except those that the server already has; each file once.
  *
  * Test     client_suite: files_that_the_server_has_are_not_sent_again
  */
@@ -56,7 +56,7 @@ static enum outcome files_send(struct wire *wire, const char *path, const struct
 
 /* `pound submit STUDY.json`: prints the id of the study.
  *
- * Returns  value   OUTCOME_USAGE for an invalid study, every error on stderr
+ * Returns  value   OUTCOME_USAGE: the study is invalid; all errors are on stderr
  */
 enum outcome submit_study(const struct options *options)
 {

@@ -24,10 +24,10 @@ enum {
 	INPUTS_MOST = 64,
 	PARAGRAPHS = 8,
 	PATH_SIZE = 128,
-	COLUMNS = 4,      /* inputs that fit beside each other whatever the outputs' names are */
-	INPUT_WIDTH = 14, /* of an input's, beside both indices and a bar */
+	COLUMNS = 4,      /* inputs that fit side by side with output names of any length */
+	INPUT_WIDTH = 14, /* longest input name beside both indices and a bar */
 	CELL_WIDTH = 13,  /* " -0.16..-0.14", " 0.63 +-0.09" */
-	INDENT = 1,       /* of columns: four inputs fit beside both indices of names of 24 characters */
+	INDENT = 1,       /* small: four inputs fit beside both indices of names of 24 characters */
 	BOTH_WIDTH = 3,   /* " S1" */
 	CHART = 20,
 };
@@ -36,33 +36,33 @@ enum { S1, ST, INDICES };
 
 static const char *const INDEX_NAMES[INDICES] = {"S1", "ST"};
 
-/* An index of one input over what a result has under one output's name. */
+/* Range of an index of one input over all cells, frequencies and stories of one output name. */
 struct span {
-	double low, high, half; /* half the width of the last interval */
+	double low, high, half; /* half-width of the last interval */
 };
 
 struct row {
 	const char *output;
-	int n; /* outputs of that name in a cell: frequencies, stories */
+	int n; /* outputs with this name in a cell: frequencies or stories */
 	struct span spans[INDICES][INPUTS_MOST];
 };
 
 struct summary {
 	const struct reading *result;
-	bool any[INDICES]; /* whether the index has a value */
+	bool any[INDICES]; /* whether the index has a value for any input */
 	int n_cells, n_outputs, n_rows, n_inputs;
 	struct row *rows;                /* (n_rows) */
 	const char *inputs[INPUTS_MOST]; /* (n_inputs) */
-	int order[INPUTS_MOST];          /* (n_inputs) the largest first */
+	int order[INPUTS_MOST];          /* (n_inputs) by largest index, descending */
 };
 
-/* Sentences that the screen begins or ends with. */
+/* Sentences above or below the indices. */
 struct paragraphs {
 	char *text[PARAGRAPHS];
 	int n;
 };
 
-/* Adds a text on the heap. */
+/* Adds an allocated text and takes ownership of it. */
 static void paragraph_add(struct paragraphs *paragraphs, char *text)
 {
 	if (paragraphs->n < PARAGRAPHS)
@@ -88,7 +88,7 @@ static void paragraphs_print(struct paragraphs *paragraphs)
 	paragraphs->n = 0;
 }
 
-/* ---- what the result has ---- */
+/* ---- reading the result ---- */
 
 static const char *input_name(const struct reading *result, const char *output, int input)
 {
@@ -112,7 +112,7 @@ static struct row *row_of(struct summary *summary, const char *output)
 	return row;
 }
 
-/* Half of an interval; of one without width the sign is a rounding. */
+/* Half-width of an interval; fabs because rounding can make a zero width negative. */
 static double half_width(const struct reading *result, const char *input, const char *index)
 {
 	return fabs(reading_number(result, "%s/%s_high", input, index) -
@@ -152,7 +152,7 @@ static void spans_find(struct summary *summary)
 		}
 }
 
-/* The index that includes interactions, where it has values. */
+/* ST if it has values, else S1. */
 static int main_index(const struct summary *summary)
 {
 	return summary->any[ST] ? ST : S1;
@@ -166,7 +166,7 @@ static double highest(const struct summary *summary, int input)
 	return most;
 }
 
-/* The inputs by their largest index; equal ones in the study's order. */
+/* Sorts the inputs by their largest index, descending; equal inputs stay in the order of the study. */
 static void order_find(struct summary *summary)
 {
 	for (int j = 0; j < summary->n_inputs; j++) {
@@ -187,7 +187,7 @@ static void chart(double share)
 
 /* ---- every index with its interval and a bar ---- */
 
-/* "  ST  0.626 +-0.092"; nothing where no input has a value. */
+/* Prints "  ST  0.626 +-0.092"; "-" if the index has no value. */
 static void print_estimate(const struct reading *result, const char *input, const char *index)
 {
 	const double value = reading_number(result, "%s/%s", input, index);
@@ -202,7 +202,7 @@ static void print_estimate(const struct reading *result, const char *input, cons
 		printf("  %s %6.3f %7s", index, value, "");
 }
 
-/* Rows without which an output's intervals are too narrow, as its note ends; NAN: those are enough. */
+/* Rows needed for reliable intervals, read from the note of the output; NAN: the present rows are enough. */
 static double rows_needed(const struct reading *result, const char *output)
 {
 	const char *note = reading_text(result, "%s/note", output),
@@ -211,7 +211,7 @@ static double rows_needed(const struct reading *result, const char *output)
 	return colon ? strtod(colon + 1, NULL) : NAN;
 }
 
-/* "impulse: mean 0.89, noise 4 %", for the caller to free. */
+/* "impulse: mean 0.89, noise 4 %"; the caller frees it. */
 static char *output_head(const struct reading *result, const char *output)
 {
 	static const struct measure measures[] = {{"noise_share", ", noise %.2g %%", 100}, {NULL, NULL, 0}};
@@ -237,11 +237,11 @@ static void print_input(const struct summary *summary, const char *output, int j
 	putchar('\n');
 }
 
-/* The lines of this form, which it prints or only counts; a line of each index with a bar needs one cell. */
+/* Prints, or only counts, the lines of the form with a bar for each input; returns their number.  Needs a study with one cell. */
 static int bars(const struct summary *summary, bool print)
 {
 	const struct reading *result = summary->result;
-	// an input of a model of one's own has no path
+	// inputs of an external model have no path
 	const bool own = !reading_text(result, "/cells/0/outputs/0/inputs/0/path");
 	bool narrow = false;
 	int width = 0, lines = 2;
@@ -273,11 +273,11 @@ static int bars(const struct summary *summary, bool print)
 
 /* ---- a column for each input ---- */
 
-/* How much of it fits. */
+/* What fits on the screen. */
 struct layout {
-	bool both;     /* both indices of an output, below each other */
-	int outputs;   /* shown */
-	int label;     /* columns of their names and of "S1" */
+	bool both;     /* S1 and ST in two lines */
+	int outputs;   /* outputs shown */
+	int label;     /* width of the output names and of "S1" */
 	int columns;   /* inputs side by side */
 	int n_columns; /* inputs shown, in blocks below each other */
 };
@@ -297,7 +297,7 @@ static int at_least(int value, int least)
 	return value > least ? value : least;
 }
 
-/* The name of an output, for the caller to free. */
+/* The name of an output, cut to a width; the caller frees it. */
 static char *row_label(const struct row *row, int width)
 {
 	char *whole = row->n > 1 ? command_text("%s (%d)", row->output, row->n) : command_text("%s", row->output);
@@ -324,7 +324,7 @@ static struct layout layout_within(const struct summary *summary, int lines)
 	return layout;
 }
 
-/* What a layout leaves out, for the caller to free; NULL: nothing. */
+/* Sentence about what a layout leaves out; the caller frees it.  NULL: nothing. */
 static char *left_out(const struct summary *summary, const struct layout *layout)
 {
 	char *text = command_text("%s", "not shown:");
@@ -342,7 +342,7 @@ static char *left_out(const struct summary *summary, const struct layout *layout
 	return NULL;
 }
 
-/* Two decimals, of large numbers none; no "-0.00". */
+/* Two decimals, for large numbers none; no "-0.00". */
 static const char *value_text(double value, char text[24])
 {
 	snprintf(text, 24, fabs(value) < 9.995 ? "%.2f" : "%.0f", fabs(value) < 0.005 ? 0.0 : value);
@@ -363,7 +363,7 @@ static void print_span(const struct span *span, bool range)
 	printf(" %*s", CELL_WIDTH - 1, text);
 }
 
-/* One index of an output; `name`: of the output, empty below its own first line. */
+/* Prints one line: an index of an output.  `name` is the output's, or empty in its second line. */
 static void print_index(const struct summary *summary, const struct layout *layout, const struct row *row,
                         int index, const char *name, int first)
 {
@@ -377,7 +377,7 @@ static void print_index(const struct summary *summary, const struct layout *layo
 	putchar('\n');
 }
 
-/* Inputs `first` and on, as many as fit beside each other. */
+/* Prints a block: the inputs from `first` on that fit side by side. */
 static void print_block(const struct summary *summary, const struct layout *layout, int first)
 {
 	const int end = at_most(first + layout->columns, layout->n_columns);
@@ -400,7 +400,7 @@ static void print_block(const struct summary *summary, const struct layout *layo
 	}
 }
 
-/* What the numbers are, and what their ranges are over; for the caller to free. */
+/* Sentence that explains the numbers and their ranges; the caller frees it. */
 static char *intro_of(const struct summary *summary, bool both)
 {
 	bool places = false, values = false;
@@ -419,7 +419,7 @@ static char *intro_of(const struct summary *summary, bool both)
 	                      values ? "; +-: 95 % interval" : "");
 }
 
-/* The outputs of all cells whose intervals are too narrow, for the caller to free; NULL: none. */
+/* Sentence with the number of outputs whose intervals are too narrow; the caller frees it.  NULL: none. */
 static char *too_narrow(const struct reading *result)
 {
 	int n = 0, of = 0;
@@ -439,7 +439,7 @@ static char *too_narrow(const struct reading *result)
 	                    n, of, rows);
 }
 
-/* In so many lines. */
+/* Prints the form with a column for each input in at most `lines` lines. */
 static void print_columns(const struct summary *summary, int lines)
 {
 	char *intro = intro_of(summary, summary->any[S1] && summary->any[ST]),
@@ -466,7 +466,7 @@ static void print_columns(const struct summary *summary, int lines)
 	free(narrow);
 }
 
-/* ---- what is above and below ---- */
+/* ---- paragraphs above and below the indices ---- */
 
 static char *runs_of(const struct reading *result)
 {
@@ -504,7 +504,7 @@ static void above_find(const struct reading *result, struct paragraphs *above)
 		                                  reading_number(result, "/partial/rows"),
 		                                  reading_number(result, "/partial/rows_most"),
 		                                  reading_text(result, "/partial/note")));
-	// what its sentence goes on with is in the table
+	// the remainder of the sentence explains the table of choices, not shown here
 	const char *split = reading_text(result, "/stopping/signals/note");
 	if (split)
 		paragraph_add(above, command_text("%.*s", (int)strcspn(split, ";"), split));
@@ -527,7 +527,7 @@ static char *tables_of(const struct reading *result)
 	return line;
 }
 
-/* What is uncertain for another reason than the rows, the widest interval, and where the rest is. */
+/* Errors that more rows do not reduce, the widest interval, and where to find the other tables. */
 static void below_find(const struct reading *result, struct paragraphs *below)
 {
 	struct widest_interval widest;
@@ -546,7 +546,7 @@ static void below_find(const struct reading *result, struct paragraphs *below)
 
 /* ---- the screen ---- */
 
-/* Prints the indices to quote, how far they may be off and why, and where the rest is.
+/* Prints the indices to quote, their uncertainty and its cause, and where to find the other tables.
  *
  * Test     client_run: a_table_without_a_name_is_a_summary_of_one_screen
  */

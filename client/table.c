@@ -1,4 +1,4 @@
-/* table.c - cells are kept as text; alignment is decided when all of them are known. */
+/* table.c - stores cells as text; widths and alignment are computed when all cells are known. */
 #include "client/table.h"
 
 #include "client/command.h"
@@ -20,7 +20,7 @@ struct cell {
 
 struct table {
 	int n_columns, n_cells, room;
-	int n_keys;               /* columns that are printed again where a row is folded */
+	int n_keys;               /* first columns, repeated in every block of a folded table */
 	char *names[COLUMNS_MAX]; /* (n_columns) */
 	struct cell *cells;       /* (n_cells), row-major */
 };
@@ -48,14 +48,14 @@ static struct cell *next_cell(struct table *table)
 	return cell;
 }
 
-/* Puts a text, copied, into the next cell. */
+/* Copies a text into the next cell. */
 void table_text(struct table *table, const char *text)
 {
 	struct cell *cell = next_cell(table);
 	cell->text = text ? command_sure(strdup(text)) : NULL;
 }
 
-/* Puts a number into the next cell: four digits for people, all of them in CSV. */
+/* Puts a number into the next cell: four significant digits in a printed table, all digits in CSV. */
 void table_number(struct table *table, double value)
 {
 	char text[32];
@@ -77,7 +77,7 @@ int table_width(const char *text)
 	return n;
 }
 
-/* The byte at which character n of a text begins. */
+/* Byte offset of character n in a UTF-8 text. */
 static size_t character_at(const char *text, int n)
 {
 	size_t at = 0;
@@ -86,7 +86,7 @@ static size_t character_at(const char *text, int n)
 	return at;
 }
 
-/* What is left out of a path is its beginning, and of any other text its middle: where they differ stays.
+/* Cuts a text to a width: a path at its beginning, any other text in its middle, so that similar texts stay distinguishable.
  *
  * Memory   allocates; the caller frees
  * Test     client_wire
@@ -114,7 +114,7 @@ void table_say(const char *text)
 	free(tame);
 }
 
-/* Breaks a text into lines, which it prints or only counts. */
+/* Breaks a text into lines and prints or only counts them; returns their number. */
 static int prose(int indent, const char *text, bool print)
 {
 	char *words = command_sure(strdup(text)), *rest;
@@ -144,7 +144,7 @@ int table_prose_lines(int indent, const char *text)
 	return prose(indent, text, false);
 }
 
-/* Prints one cell in its column; the last column of text is not padded. */
+/* Prints one cell in its column; text in the last column is not padded. */
 static void put(const char *text, int width, bool right, bool last)
 {
 	const int blanks = width - table_width(text);
@@ -157,7 +157,7 @@ static void put(const char *text, int width, bool right, bool last)
 		pad(blanks);
 }
 
-/* how a table is laid out: of each column its width, 0: no row has a value; and whether it is of numbers */
+/* Width of each column (0: no row has a value), and whether it is right-aligned because it has numbers. */
 struct layout {
 	int width[COLUMNS_MAX];
 	bool right[COLUMNS_MAX];
@@ -186,8 +186,8 @@ static struct layout layout_of(const struct table *table, int indent)
 	return layout;
 }
 
-/* The column behind the last one that fits beside the keys, from `first` on: one does, however wide it is; the first and the table's
- * last one are cut to fit where they are of texts. */
+/* Returns the end of the block of columns from `first` on that fit beside the keys; the block has at least one column.  Text columns
+ * are cut to fit if they are the first of the block or the last of the table. */
 static int block_end(const struct table *table, struct layout *layout, int indent, int first)
 {
 	int used = indent, end = first;
@@ -205,7 +205,7 @@ static int block_end(const struct table *table, struct layout *layout, int inden
 	return end;
 }
 
-/* The keys of all rows and their columns first to end - 1. */
+/* Prints the key columns and the columns first to end - 1 of all rows. */
 static void print_block(const struct table *table, const struct layout *layout, int indent, int first,
                         int end)
 {
@@ -226,7 +226,7 @@ static void print_block(const struct table *table, const struct layout *layout, 
 	}
 }
 
-/* Prints the table aligned, in as many blocks below each other as its width needs; a column in which no row has a value is
+/* Prints the table aligned, folded into blocks below each other if it is too wide; columns without any value are
  * left out.
  *
  * Test     client_run: every_table_fits_a_terminal_of_80_columns
@@ -242,7 +242,7 @@ void table_print(const struct table *table, int indent)
 	}
 }
 
-/* Prints the table as CSV, numbers to the last digit. */
+/* Prints the table as CSV, numbers with all digits. */
 void table_print_csv(const struct table *table)
 {
 	struct writer writer;

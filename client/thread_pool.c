@@ -16,19 +16,19 @@
 struct work_study {
 	TAILQ_ENTRY(work_study) others;
 	uint64_t id;
-	char *document; /* (length) bytes, until it is opened */
+	char *document; /* (length) bytes; freed when the run is created */
 	size_t length;
 	struct pound_study *study;
-	struct pound_run *run; /* NULL: not yet, or it could not be made */
-	size_t values_most;    /* of a block */
-	atomic_bool stop;      /* it was dropped */
-	int n_orders;          /* in the queue, and at work */
+	struct pound_run *run; /* NULL: not created yet, or creation failed */
+	size_t values_most;    /* largest number of values of a block */
+	atomic_bool stop;      /* the coordinator dropped the study */
+	int n_orders;          /* orders queued or being executed */
 };
 
 struct order {
 	STAILQ_ENTRY(order) next;
 	struct work_study *study;
-	int block; /* -1: make the run */
+	int block; /* -1: create the run */
 };
 
 struct thread_pool {
@@ -36,7 +36,7 @@ struct thread_pool {
 	pthread_cond_t ordered;
 	TAILQ_HEAD(, work_study) studies;
 	STAILQ_HEAD(, order) orders;
-	pthread_mutex_t answers; /* one at a time */
+	pthread_mutex_t answers; /* serializes calls of answer */
 	worker_answer *answer;
 	void *to;
 	int n_threads, n_numbered;
@@ -56,7 +56,7 @@ static void give_answer(struct thread_pool *pool, const struct message *message,
 	pthread_mutex_unlock(&pool->answers);
 }
 
-/* Makes the run of a study and answers with the digest. */
+/* Creates the run of a study and answers with the digest of its design. */
 static void open_study(struct thread_pool *pool, struct work_study *s)
 {
 	struct message m = {.type = MESSAGE_DESIGN, .study = s->id, .status = POUND_NOMEM};
@@ -147,13 +147,13 @@ struct thread_pool *thread_pool_start(int n_threads, worker_answer *answer, void
 	for (int i = 0; i < n_threads; i++) {
 		pthread_t id;
 		if (pthread_create(&id, NULL, thread, pool) != 0)
-			return NULL; // the program ends
+			return NULL; // the caller then ends the program, and with it the started threads
 		pthread_detach(id);
 	}
 	return pool;
 }
 
-/* Under the lock. */
+/* Queues an order; false: no memory.  The caller holds the lock. */
 static bool put(struct thread_pool *pool, struct work_study *s, int block)
 {
 	struct order *order = malloc(sizeof *order);
@@ -166,7 +166,7 @@ static bool put(struct thread_pool *pool, struct work_study *s, int block)
 	return true;
 }
 
-/* Executes a message for the study it names (NULL: no such study). */
+/* Executes a message for the study that it names (s NULL: no such study); false: the message is invalid. */
 static bool obey(struct thread_pool *pool, const struct message *m, struct work_study *s, char **body)
 {
 	switch ((enum message_type)m->type) {
@@ -191,7 +191,7 @@ static bool obey(struct thread_pool *pool, const struct message *m, struct work_
 	case MESSAGE_READY:
 	case MESSAGE_DESIGN:
 	case MESSAGE_VALUES:
-	case MESSAGE_REFUSE: // by worker_take
+	case MESSAGE_REFUSE: // handled by worker_take
 		break;
 	}
 	return false;

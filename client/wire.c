@@ -9,24 +9,24 @@
 #include <string.h>
 
 enum {
-	CONNECT_S = 10, /* to reach the server */
-	SILENCE_S = 60, /* without a byte before the server counts as lost */
-	MADE_S = 3600,  /* the same while it may be computing: a machine that is gone is noticed before */
+	CONNECT_S = 10, /* timeout for connecting */
+	SILENCE_S = 60, /* timeout without a received byte */
+	MADE_S = 3600,  /* the same while the server may compute; keepalive finds a lost machine earlier */
 };
 
 struct wire {
 	CURL *curl;
 	const char *url;
-	size_t n_url; /* of url without the slashes it ends in */
-	char *direct; /* hosts that no proxy is asked for */
-	bool in_time; /* a request may take timeout_s, 0: without limit, whether bytes come or not */
+	size_t n_url; /* length of url without trailing slashes */
+	char *direct; /* hosts that are reached without a proxy */
+	bool in_time; /* timeout_s (0: no limit) limits the whole request, in place of SILENCE_S and MADE_S */
 	int timeout_s;
-	FILE *body; /* of the reply that is coming */
+	FILE *body; /* receives the body of the reply */
 	struct curl_slist *headers;
 	char failure[CURL_ERROR_SIZE];
 };
 
-/* Opens nothing yet: the first request connects.  A proxy of the environment is used, though never for this machine.
+/* Prepares a connection, which the first request opens.  A proxy in the environment is used, except for localhost.
  *
  * Memory   allocates; wire_close frees
  */
@@ -37,7 +37,7 @@ struct wire *wire_open(const char *url)
 	if (!direct)
 		direct = getenv("NO_PROXY");
 	wire->curl = command_sure(curl_global_init(CURL_GLOBAL_DEFAULT) == 0 ? curl_easy_init() : NULL);
-	// "*", for any host, is no part of a list
+	// libcurl accepts "*", for any host, only as the whole list
 	bool any = direct && strcmp(direct, "*") == 0;
 	wire->direct = command_text(any ? "*" : "localhost,127.0.0.1,::1,%s", direct ? direct : "");
 	wire->url = url;
@@ -107,7 +107,7 @@ static void options_set(struct wire *wire, const struct wire_request *request, c
 	curl_easy_setopt(curl, CURLOPT_CUSTOMREQUEST, request->method);
 }
 
-/* Whether a request failed because the URL is none that can be asked: it failed before any connection. */
+/* Whether a request failed before any connection because the URL is malformed or has an unsupported scheme. */
 static bool no_url(CURL *curl, CURLcode code)
 {
 	long connections = 0;
@@ -115,7 +115,7 @@ static bool no_url(CURL *curl, CURLcode code)
 	return connections == 0 && (code == CURLE_URL_MALFORMAT || code == CURLE_UNSUPPORTED_PROTOCOL);
 }
 
-/* Makes the handle ready for a request; what it needs meanwhile is kept in the wire. */
+/* Prepares the handle for a request; the wire owns the headers and the body stream until request_end. */
 static void request_begin(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
 {
 	*reply = (struct wire_reply){0};
@@ -137,7 +137,7 @@ static void request_begin(struct wire *wire, const struct wire_request *request,
 	free(url);
 }
 
-/* Takes the reply, or what there is of it; the reason why there is none is in the wire. */
+/* Completes the reply, possibly a partial one; after a failure wire->failure has the reason. */
 static enum outcome request_end(struct wire *wire, CURLcode code, struct wire_reply *reply)
 {
 	fclose(wire->body);
@@ -154,10 +154,10 @@ static enum outcome request_end(struct wire *wire, CURLcode code, struct wire_re
 	return code == CURLE_OK ? OUTCOME_OK : no_url(wire->curl, code) ? OUTCOME_USAGE : OUTCOME_UNREACHED;
 }
 
-/* Sends one request and takes the whole answer.
+/* Sends one request and receives the whole reply.
  *
- * Returns  value   OUTCOME_OK, OUTCOME_UNREACHED, or OUTCOME_USAGE for a URL that is none
- * Memory   reply is allocated whatever the value; wire_reply_free frees it
+ * Returns  value   OUTCOME_OK, OUTCOME_UNREACHED, or OUTCOME_USAGE for an invalid URL
+ * Memory   reply is allocated also after a failure; wire_reply_free frees it
  */
 enum outcome wire_send(struct wire *wire, const struct wire_request *request, struct wire_reply *reply)
 {
@@ -165,19 +165,19 @@ enum outcome wire_send(struct wire *wire, const struct wire_request *request, st
 	return request_end(wire, curl_easy_perform(wire->curl), reply);
 }
 
-/* The address of the server as the user gave it. */
+/* The URL of the server as the user gave it. */
 const char *wire_url(const struct wire *wire)
 {
 	return wire->url;
 }
 
-/* Why the last wire_send got no answer, a sentence of libcurl. */
+/* Why the last wire_send got no reply, in the words of libcurl. */
 const char *wire_failure(const struct wire *wire)
 {
 	return wire->failure;
 }
 
-/* Frees what a reply holds and leaves it empty. */
+/* Frees the contents of a reply and leaves it empty. */
 void wire_reply_free(struct wire_reply *reply)
 {
 	free(reply->body);
@@ -198,10 +198,10 @@ struct wire_jobs {
 	CURLM *curl;
 	int n;
 	struct wire **wires;        /* (n) */
-	struct wire_reply *replies; /* that are coming  (n) */
+	struct wire_reply *replies; /* being received  (n) */
 };
 
-/* Connections are kept: as many as there are jobs.
+/* Prepares n simultaneous requests; their connections are kept open for later requests.
  *
  * Memory   allocates; wire_jobs_close frees
  */
@@ -221,7 +221,7 @@ struct wire_jobs *wire_jobs_open(const char *url, int n, int timeout_s)
 	return jobs;
 }
 
-/* Gives up what is under way. */
+/* Aborts all transfers and frees the jobs. */
 void wire_jobs_close(struct wire_jobs *jobs)
 {
 	for (int job = 0; job < jobs->n; job++) {
@@ -250,9 +250,9 @@ void wire_jobs_send(struct wire_jobs *jobs, int job, const struct wire_request *
 
 /* Drives the transfers until one has ended.
  *
- * Returns  value    the job; -1: none within the time
- *          outcome  of that job as wire_send returns it
- *          reply    of that job; wire_reply_free frees it
+ * Returns  value    number of the job; -1: no transfer ended within wait_ms
+ *          outcome  of this job, as returned by wire_send
+ *          reply    of this job; wire_reply_free frees it
  */
 int wire_jobs_receive(struct wire_jobs *jobs, int wait_ms, enum outcome *outcome, struct wire_reply *reply)
 {

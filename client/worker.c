@@ -11,7 +11,7 @@
 
 static void send_answer(void *to, const struct message *message, const void *body)
 {
-	// the coordinator has gone, and with it all reason to go on
+	// the coordinator has closed the connection, so nobody needs further answers
 	if (!message_send(*(const int *)to, message, body))
 		_exit(EXIT_SUCCESS);
 }
@@ -38,6 +38,6 @@ int main(int argc, char **argv)
 	const bool refused = message.type == MESSAGE_REFUSE;
 	if (options.at && !asked && !refused)
 		fputs("pound-worker: the connection ended before a study came\n", stderr);
-	// threads are at work
+	// _exit, because the threads of the pool still run
 	_exit(sense && !refused && (asked || !options.at) ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -20,16 +20,16 @@
 
 enum {
 	ADDRESS_SIZE = 512,
-	/* between two tries to connect [ms]: the first, the longest where nobody listens, the longest after being refused */
+	/* pause between attempts to connect [ms]: first; longest if nothing listens; longest after a refusal */
 	PAUSE_MIN = 250,
 	PAUSE_MAX = 2000,
 	PAUSE_REFUSED_MAX = 60000,
-	LASTED = 10, /* [s] with which a connection was a good one, whatever came */
+	LASTED = 10, /* [s] after a connection of this length the pause is PAUSE_MIN again */
 };
 
 /* Where to connect, and with what token. */
 struct place {
-	char text[ADDRESS_SIZE]; /* what the others point into */
+	char text[ADDRESS_SIZE]; /* host and port point into it */
 	const char *host, *port;
 	char token[MESSAGE_TOKEN_SIZE + 1];
 };
@@ -46,7 +46,7 @@ __attribute__((format(printf, 1, 2))) static void complain(const char *format, .
 
 #define FAIL(...) (complain(__VA_ARGS__), exit(EXIT_FAILURE))
 
-/* Cuts a text at its last colon, as an address of IPv6 has colons; NULL: there is none. */
+/* Cuts a text at its last colon (an IPv6 address contains colons) and returns the text behind it; NULL: no colon. */
 static char *cut(char *text)
 {
 	char *colon = strrchr(text, ':');
@@ -93,7 +93,7 @@ static void place_of_launcher(struct place *place)
 	strcpy(place->token, token);
 }
 
-/* A connection to one of the addresses of a host; -1: failed, with the reason. */
+/* Connects to the first reachable address of a host; -1: failed, `why` is the reason. */
 static int connect_to(const struct place *place, const char **why)
 {
 	const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM};
@@ -116,7 +116,7 @@ static int connect_to(const struct place *place, const char **why)
 	return s;
 }
 
-/* Sends the token and the greeting; NULL, or what failed. */
+/* Sends the token and the first message; returns NULL, or the error. */
 static const char *greet(int s, const struct place *place, int n_threads)
 {
 	const struct message ready = {
@@ -128,13 +128,13 @@ static const char *greet(int s, const struct place *place, int n_threads)
 	           : strerror(errno);
 }
 
-/* Ends the program, also when it is the first process of a container, which no signal ends by itself. */
+/* Signal handler that ends the program: process 1 of a container ignores signals without a handler. */
 static void end(int signal)
 {
 	_exit(128 + signal);
 }
 
-/* In the process that serves a connection: it ends with the one that connected. */
+/* Makes this process, which serves a connection, end together with its parent. */
 static void end_with(pid_t parent)
 {
 	prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -142,7 +142,7 @@ static void end_with(pid_t parent)
 		_exit(EXIT_FAILURE);
 }
 
-/* Connects, forever; returns in a new process for each connection. */
+/* Connects again and again; returns only in the child process that serves a connection. */
 static int connect_again(struct place *place, const char *token_file)
 {
 	const char *why = "no socket", *said = "";
@@ -152,7 +152,7 @@ static int connect_again(struct place *place, const char *token_file)
 		signal(SIGINT, SIG_IGN);
 	for (unsigned pause = PAUSE_MIN, most;; pause = 2 * pause < most ? 2 * pause : most) {
 		char token[MESSAGE_TOKEN_SIZE + 1];
-		if (!listen_token(token_file, token)) // which may have been replaced
+		if (!listen_token(token_file, token)) // the file may have been replaced
 			memcpy(place->token, token, sizeof token);
 		int s = connect_to(place, &why), status = 0;
 		if (s < 0 && strcmp(why, said) != 0)
@@ -212,11 +212,11 @@ bool worker_take(int connection, struct message *message, char **body)
 	return false;
 }
 
-/* Threads: as many as this process may use cores. */
+/* Default number of threads: the cores that this process may use. */
 static int cores(void)
 {
 	cpu_set_t set;
-	// of more processors than a set holds all count
+	// sched_getaffinity fails on more processors than a cpu_set_t holds; then count all
 	const long n =
 	    sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : sysconf(_SC_NPROCESSORS_ONLN);
 	return n < MESSAGE_THREADS_MAX ? (int)n : MESSAGE_THREADS_MAX;
@@ -267,7 +267,7 @@ struct worker_options worker_options(int argc, char **argv)
 	                                        "by --worker-listen.\vA launcher sets POUND_WORKER, which says "
 	                                        "where to connect: HOST:PORT:TOKEN."};
 	struct worker_options options = {.n_threads = cores()};
-	argp_err_exit_status = 2; // as in pound
+	argp_err_exit_status = 2; // the same as pound
 	argp_parse(&argp, argc, argv, 0, NULL, &options);
 	return options;
 }

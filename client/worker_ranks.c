@@ -23,17 +23,17 @@
 #include "client/worker_connection.h"
 
 enum {
-	TAG_END = 0,      /* the last message of rank 0 */
-	TAGS = 30000,     /* MPI has 32,767 at least */
-	STUDIES_MAX = 64, /* that have no end yet; a coordinator has fewer */
+	TAG_END = 0,      /* tag of the last message of rank 0 */
+	TAGS = 30000,     /* number of tags for studies; MPI guarantees 32,767 */
+	STUDIES_MAX = 64, /* studies open at a time; a coordinator has fewer */
 	IDLE_US = 100,
 	END_MAX = 10, /* [s] from the end of the connection to the exit of the program */
 };
 
-/* A message on its way. */
+/* A message to or from a rank or the coordinator. */
 struct packet {
 	STAILQ_ENTRY(packet) next;
-	int rank; /* that it is from; CONNECTION */
+	int rank; /* sender, or CONNECTION */
 	int n_users;
 	bool over; /* the connection has ended */
 	struct wire {
@@ -50,7 +50,7 @@ struct mailbox {
 	STAILQ_HEAD(, packet) packets;
 };
 
-/* A send or a receive that has not ended. */
+/* A nonblocking send or receive that has not completed. */
 struct posted {
 	struct packet *packet;
 	bool is_receive;
@@ -59,15 +59,15 @@ struct posted {
 struct rank_study {
 	uint64_t id; /* 0: no study */
 	int n_awaited;
-	struct message design; /* the answer */
+	struct message design; /* the answer to the coordinator */
 	uint8_t digest[MESSAGE_DIGEST_SIZE];
 };
 
 struct ranks {
 	int rank, n;
-	int *threads, *out; /* (n) of each rank: how many, blocks that it has */
+	int *threads, *out; /* (n) of each rank: number of threads, number of assigned blocks */
 	int connection;
-	pthread_mutex_t sending; /* to it */
+	pthread_mutex_t sending; /* serializes sends to the connection */
 	struct thread_pool *pool;
 	struct mailbox mailbox;
 	MPI_Request *requests;
@@ -122,7 +122,7 @@ static void mail_put(struct mailbox *mailbox, struct packet *p)
 	pthread_mutex_unlock(&mailbox->lock);
 }
 
-/* NULL: there is none. */
+/* NULL: the mailbox is empty. */
 static struct packet *mail_take(struct mailbox *mailbox)
 {
 	pthread_mutex_lock(&mailbox->lock);
@@ -163,7 +163,7 @@ static void send_packet(struct ranks *r, int rank, struct packet *p, int tag)
 	          post(r, p, false));
 }
 
-/* Posts the receive of an answer with a body of so many bytes at most. */
+/* Posts the receive of an answer with a body of at most `body` bytes. */
 static void expect(struct ranks *r, int rank, uint64_t study, size_t body)
 {
 	struct packet *p = packet_new(rank, body);
@@ -173,7 +173,7 @@ static void expect(struct ranks *r, int rank, uint64_t study, size_t body)
 
 static void answer_take(struct ranks *r, struct packet *p);
 
-/* Takes what has ended of all that is posted; false: nothing has. */
+/* Handles completed sends and receives; false: none has completed. */
 static bool progress(struct ranks *r)
 {
 	int n = 0;
@@ -206,7 +206,7 @@ static bool progress(struct ranks *r)
 
 /* ---- rank 0 ---- */
 
-/* One that has ended is noticed by the thread that reads it. */
+/* Sends to the coordinator.  Errors are ignored: the thread that reads the connection detects its end. */
 static void connection_send(struct ranks *r, const struct message *message, const void *body)
 {
 	pthread_mutex_lock(&r->sending);
@@ -249,7 +249,7 @@ static struct rank_study *study_of(struct ranks *r, uint64_t id)
 	return NULL;
 }
 
-/* A design of one of the ranks. */
+/* Takes the digest of the design from one rank; after the last one, answers the coordinator. */
 static void design_take(struct ranks *r, const struct packet *p)
 {
 	struct rank_study *s = study_of(r, p->wire.head.study);
@@ -260,14 +260,14 @@ static void design_take(struct ranks *r, const struct packet *p)
 		s->design = p->wire.head;
 		memcpy(s->digest, p->wire.body, message_body_size(&p->wire.head));
 	} else if (s->design.status == POUND_OK && memcmp(s->digest, p->wire.body, sizeof s->digest) != 0)
-		memset(s->digest, 0, sizeof s->digest); // the coordinator refuses what is no digest of its design
+		memset(s->digest, 0, sizeof s->digest); // the coordinator refuses a digest that differs from its own
 	if (--s->n_awaited > 0)
 		return;
 	connection_send(r, &s->design, s->digest);
 	s->id = 0;
 }
 
-/* An answer of another rank, or a note about one's own. */
+/* Takes an answer of another rank, or the notice that rank 0 itself has answered. */
 static void answer_take(struct ranks *r, struct packet *p)
 {
 	if (p->wire.head.type == MESSAGE_DESIGN)
@@ -280,7 +280,7 @@ static void answer_take(struct ranks *r, struct packet *p)
 	packet_free(p);
 }
 
-/* Does what a message says in this process. */
+/* Executes a message in this process; false: the message is invalid. */
 static bool obey(struct ranks *r, const struct packet *p)
 {
 	const size_t n = message_body_size(&p->wire.head);
@@ -300,7 +300,7 @@ static void study_begin(struct ranks *r, uint64_t id)
 		expect(r, rank, id, MESSAGE_DIGEST_SIZE);
 }
 
-/* The rank with the fewest blocks a thread. */
+/* The rank with the fewest assigned blocks per thread. */
 static int rank_next(const struct ranks *r)
 {
 	int best = 0;
@@ -310,7 +310,7 @@ static int rank_next(const struct ranks *r)
 	return best;
 }
 
-/* A message of the coordinator. */
+/* Distributes a message of the coordinator to the ranks. */
 static void pass_on(struct ranks *r, struct packet *p)
 {
 	const uint64_t study = p->wire.head.study;
@@ -364,7 +364,7 @@ static void answer_queue(void *of, const struct message *message, const void *bo
 	mail_put(&r->mailbox, packet_of(r->rank, message, body));
 }
 
-/* Takes a message of rank 0; false: there is none. */
+/* Receives and executes a message of rank 0; false: no message has arrived. */
 static bool question_take(struct ranks *r)
 {
 	MPI_Status status;
@@ -388,7 +388,7 @@ static bool question_take(struct ranks *r)
 static void work(struct ranks *r)
 {
 	for (bool more = true; more;) {
-		// in this order: a thread leaves its answer before it is idle
+		// check for idle threads before taking answers: a thread leaves its answer first and is idle afterwards
 		more = !r->ending || !thread_pool_idle(r->pool);
 		bool idle = !question_take(r);
 		for (struct packet *p; (p = mail_take(&r->mailbox)); idle = false) {
@@ -427,6 +427,6 @@ int main(int argc, char **argv)
 	r.pool = must(thread_pool_start(n_threads, r.rank == 0 ? answer_own : answer_queue, &r));
 	(r.rank == 0 ? coordinate : work)(&r);
 	MPI_Finalize();
-	// threads wait for blocks
+	// _exit, because the threads of the pool still wait for blocks
 	_exit(EXIT_SUCCESS);
 }

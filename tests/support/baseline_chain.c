@@ -71,7 +71,7 @@ static inline __attribute__((always_inline)) void stories_pull(struct loop *x, b
 		x->drift[i] = spring + x->c[i] * rate;
 		x->top[i] = fabs(d) > x->top[i] ? fabs(d) : x->top[i];
 	}
-	for (int i = 0; i < x->n; i++) // forces of floors
+	for (int i = 0; i < x->n; i++) // forces on floors
 		x->force[i] = (i + 1 < x->n ? x->inner[i + 1] * x->drift[i + 1] : 0) - x->drift[i];
 }
 

@@ -8,7 +8,7 @@
 #include <assert.h>
 #include <math.h>
 
-/* Where the bodies are one step before they start at rest: u - h v + h2/2 u", of a body without force [m]. */
+/* Displacement one step before the start from rest, u - h v + h2/2 u", for a body without spring and contact force [m]. */
 static double step_before(const struct pound_task *task, int i, double h)
 {
 	return -0.5 * h * h * task->bodies[i].drive * task->ground[0];
@@ -17,8 +17,8 @@ static double step_before(const struct pound_task *task, int i, double h)
 /* Response of one task with a fixed step: forces, then the next displacements.
  *
  * Given    task    linear laws, tension
- *          steps   from a sample to the next
- * Returns  value   first-order in the step: the dashpot of the contact sees the velocity half a step ago
+ *          steps   time steps per sample interval
+ * Returns  value   first-order accurate in the step: the contact dashpot uses the velocity half a step earlier
  *
  *   (1 + c h/2) u_next = 2 u - (1 - c h/2) u_before - h2 (k u + a +- F),   F = K p + C p' where p > 0
  *
@@ -46,7 +46,7 @@ struct baseline_result baseline_plain(const struct pound_task *task, int steps)
 				contacts += !touching;
 				touching = true;
 			} else {
-				// of the whole contact: at its end the dashpot pulls
+				// impulse of the whole contact: at its end the dashpot pulls, which reduces the impulse
 				impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 				touching = false;
 			}
@@ -59,13 +59,13 @@ struct baseline_result baseline_plain(const struct pound_task *task, int steps)
 			u_max = fabs(u1) > u_max ? fabs(u1) : u_max;
 		}
 	}
-	// a contact still open at the end counts with what it has
+	// a contact that has not ended counts with its impulse so far
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};
 }
 
-/* u_next = now u + before u_before + ground a + rest */
+/* u_next = now u + before u_before + ground a + rest; `rest` is the constant term due to the gap */
 struct recurrence {
 	double now[2][2], before[2][2], ground[2], rest[2];
 };
@@ -73,7 +73,7 @@ struct recurrence {
 /* The recurrence of central differences with the velocity (u_next - u_before)/2h.
  *
  * Given    task, h    h [s]
- *          K, C       K/m1, C/m1, 0 while apart [1/s2], [1/s]
+ *          K, C       K/m1 [1/s2] and C/m1 [1/s]; 0 while separated
  *
  *   (M/h2 + D/2h) u_next = (2M/h2 - S) u - (M/h2 - D/2h) u_before - drive a + K gap,    masses divided out
  *
@@ -110,9 +110,9 @@ static struct recurrence recurrence(const struct pound_task *task, double h, dou
 	return x;
 }
 
-/* The same with all products worked out before the loop.
+/* The same response, with all products computed before the loop.
  *
- * Returns  value   first-order in the step where a contact begins or ends, second-order between
+ * Returns  value   first-order accurate in the step where a contact begins or ends, second-order between
  *
  * Test     bench: within the errors of the plain loop
  */
@@ -141,7 +141,7 @@ struct baseline_result baseline_tuned(const struct pound_task *task, int steps)
 			} else {
 				next1 = free.now[0][0] * u1 + free.before[0][0] * before1 + free.ground[0] * a;
 				next2 = free.now[1][1] * u2 + free.before[1][1] * before2 + free.ground[1] * a;
-				// of the whole contact: at its end the dashpot pulls
+				// impulse of the whole contact: at its end the dashpot pulls, which reduces the impulse
 				impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 				touching = false;
 			}
@@ -150,7 +150,7 @@ struct baseline_result baseline_tuned(const struct pound_task *task, int steps)
 			u_max = fabs(u1) > u_max ? fabs(u1) : u_max;
 		}
 	}
-	// a contact still open at the end counts with what it has
+	// a contact that has not ended counts with its impulse so far
 	impulse_max = touching && impulse > impulse_max ? impulse : impulse_max;
 	return (struct baseline_result){
 	    .displacement_max = u_max, .impulse_max = impulse_max, .contacts = contacts};

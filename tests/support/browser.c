@@ -20,9 +20,9 @@ enum { WAIT_S = 20, TABS_MOST = 80 };
 struct browser {
 	pid_t pid;
 	int to, from;
-	int id; /* of the last message */
+	int id; /* id of the last command */
 	char session[64];
-	char *buffer; /* (n) bytes that came and are no whole message yet */
+	char *buffer; /* (n) received bytes, at its end an incomplete message */
 	size_t n;
 	int faults;
 	char fault[600];
@@ -54,7 +54,7 @@ static void start(struct browser *browser, const char *folder)
 	assert_true(browser->pid >= 0);
 	if (browser->pid == 0) {
 		int nowhere = open("/dev/null", O_RDWR);
-		// a process group of its own: it has many processes
+		// a separate process group, so that all processes of the browser can be ended
 		setpgid(0, 0);
 		prctl(PR_SET_PDEATHSIG, SIGKILL);
 		int input = fcntl(to[0], F_DUPFD, 10), output = fcntl(from[1], F_DUPFD, 10);
@@ -72,7 +72,7 @@ static void start(struct browser *browser, const char *folder)
 	browser->from = from[0];
 }
 
-/* Notes what a page must not have done. */
+/* Records exceptions, logged errors and violations of the Content Security Policy. */
 static void judge(struct browser *browser, const struct reading *event, const char *text)
 {
 	const char *method = reading_text(event, "/method");
@@ -89,7 +89,7 @@ static void judge(struct browser *browser, const struct reading *event, const ch
 	snprintf(browser->fault, sizeof browser->fault, "%s", text);
 }
 
-/* The next message, for free. */
+/* Waits for the next message; the caller frees it. */
 static char *message(struct browser *browser)
 {
 	for (;;) {
@@ -113,7 +113,7 @@ static char *message(struct browser *browser)
 	}
 }
 
-/* One command and its answer, for reading_close; events before it are judged. */
+/* Sends a command and returns its answer, for reading_close; events before the answer are checked by judge. */
 static struct reading *call(struct browser *browser, const char *method, const char *parameters)
 {
 	char session[100] = "", *text = NULL;
@@ -135,7 +135,7 @@ static struct reading *call(struct browser *browser, const char *method, const c
 		struct reading *answer = reading_open(text, strlen(text));
 		assert_non_null(answer);
 		if (reading_number(answer, "/id") == browser->id) {
-			// a page that is left while it computes a value gives none
+			// navigation while a value is computed ends in this error, which is accepted
 			if (reading_has(answer, "/error") && !strstr(text, "Inspected target navigated or closed"))
 				fail_msg("%s: %s", method, text);
 			free(text);
@@ -152,7 +152,7 @@ static void command(struct browser *browser, const char *method, const char *par
 	reading_close(call(browser, method, parameters));
 }
 
-/* {"name": "text"} and more members behind it, for free. */
+/* {"name": "text"} with further members; the caller frees it. */
 static char *with_text(const char *name, const char *text, const char *more)
 {
 	struct writer w;

@@ -37,7 +37,7 @@ int row_harmonic(struct row *row, double frequency_hz, double duration, double p
 	return n;
 }
 
-/* Stiffnesses of a building by its first frequency, and its dashpots. */
+/* Story stiffnesses from the first frequency of a building, and its dashpots. */
 static void building_floors(struct row *row, int b, struct pound_chain_floor *floor)
 {
 	struct row_building *x = &row->buildings[b];
@@ -74,7 +74,7 @@ static void building_floors(struct row *row, int b, struct pound_chain_floor *fl
 	}
 }
 
-/* One side of a link: its floors and weights, what it adds to 1/m, and the initial stiffness of the story that holds it. */
+/* One side of a link: floors and weights, contribution to 1/m, and initial stiffness of the story at that level. */
 static void link_side(const struct row *row, struct pound_link *link, int side, int building, double level,
                       double *inverse_mass, double *stiffness)
 {

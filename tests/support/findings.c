@@ -5,16 +5,16 @@
 
 const double findings_f1[FREQUENCIES] = {0.5, 1, 2, 3, 4, 5};
 
-/* Measures for words of the paper that it does not quantify: */
-static const double GENERAL = 0.75;     /* "in general, with a few exceptions": of the cases */
+/* Thresholds for terms that the paper does not quantify: */
+static const double GENERAL = 0.75;     /* "in general, with a few exceptions": share of the cases */
 static const double ALL = 1.0;          /* "in all cases" */
-static const double NARROW = 0.1;       /* "narrow": half of an interval */
-static const double SIGNIFICANT = 0.05; /* "significant difference" of two indices */
-static const double QUARTER = 0.25;     /* "important", "considerable": what each of four equal inputs has */
+static const double NARROW = 0.1;       /* "narrow": half-width of an interval */
+static const double SIGNIFICANT = 0.05; /* "significant difference": between two indices */
+static const double QUARTER = 0.25;     /* "important", "considerable": index of each of four equal inputs */
 static const double ALIKE = 2.0;        /* "comparable": largest over smallest */
 static const double MUCH = 2.0;         /* "considerable growth", "much less": a ratio */
 
-/* ---- intervals; comparisons with what is not known are false ---- */
+/* ---- intervals; comparisons with missing values are false ---- */
 
 static bool below(struct pound_estimate a, struct pound_estimate b)
 {
@@ -32,7 +32,7 @@ static struct pound_estimate exactly(double value)
 	return (struct pound_estimate){value, value, value};
 }
 
-/* Ends added to ends: an interval for the sum however the errors of the two depend on each other. */
+/* Adds the bounds: valid for the sum with any dependence between the two errors. */
 static struct pound_estimate sum(struct pound_estimate a, struct pound_estimate b)
 {
 	return (struct pound_estimate){a.value + b.value, a.low + b.low, a.high + b.high};
@@ -57,13 +57,13 @@ static enum outcome decided(bool holds, bool fails)
 	return holds ? HOLDS : fails ? FAILS : UNDECIDED;
 }
 
-/* That a is less than b. */
+/* The statement that a is less than b. */
 static enum outcome less(struct pound_estimate a, struct pound_estimate b)
 {
 	return decided(below(a, b), below(b, a));
 }
 
-/* That all parts hold. */
+/* The statement that a and b both hold. */
 static enum outcome both(enum outcome a, enum outcome b)
 {
 	return decided(a == HOLDS && b == HOLDS, a == FAILS || b == FAILS);
@@ -76,7 +76,7 @@ static const struct pound_estimate *indices(const struct evidence *e, const stru
 	return e->index[x->effect][law][f][x->order];
 }
 
-/* Of the other inputs, those surely above input j and those surely below. */
+/* Counts the inputs whose intervals are entirely above, and entirely below, the interval of input j. */
 static void rank(const struct pound_estimate *index, int j, int *above, int *under)
 {
 	*above = *under = 0;
@@ -86,7 +86,7 @@ static void rank(const struct pound_estimate *index, int j, int *above, int *und
 	}
 }
 
-/* That input j is at a place, 0 for the largest index. */
+/* The statement that input j has this rank, 0 for the largest index. */
 static enum outcome at_place(const struct pound_estimate *index, int j, int place)
 {
 	int above, under;
@@ -122,7 +122,7 @@ static enum outcome mass_and_frequency_lead(const struct evidence *e, const stru
 	return both(of_f_e, both(less(index[EPS], index[F_2]), less(index[EPS], index[MASS])));
 }
 
-/* "Not one of the predominant": neither first nor second. */
+/* "Not one of the predominant": neither the largest nor the second largest index. */
 static enum outcome eps_not_among_first(const struct evidence *e, const struct finding *x, int law, int f)
 {
 	int above, under;

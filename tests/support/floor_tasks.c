@@ -1,4 +1,4 @@
-/* floor_tasks.c - tasks of specimens. */
+/* floor_tasks.c - floor spectrum tasks of specimens. */
 #include "tests/support/floor_tasks.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 #include "engine/run/scene.h"
 #include "tests/support/check.h"
 
-/* The task as the plan makes it, but not scaled. */
+/* The task as created by the plan, but not scaled. */
 struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 {
 	const struct pound_scene *scene = &specimen->study.scene;
@@ -25,7 +25,7 @@ struct pound_task floor_task_task(const struct specimen *specimen, bool contact)
 	return task;
 }
 
-/* Spectra of a task in work space of their own. */
+/* Computes the spectra of a task in newly allocated work space. */
 struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
                                              const struct pound_spectrum *spectrum, int n_drives,
                                              double radians, int lanes, double *psa[POUND_DRIVES])
@@ -43,11 +43,11 @@ struct pound_floor_answer floor_task_spectra(const struct pound_task *task,
 	return answer;
 }
 
-/* An oscillator under straight lines of acceleration.
+/* Response of an oscillator to piecewise linear acceleration.
  *
  *   z'' + 2 xi w z' + w^2 z = -(a0 + s t) from row to row
  *
- * Valid    between rows its motion is looked at 160 times a period: its largest displacement is found to 2e-4
+ * Valid    the motion is sampled 160 times per period between rows: the error of the largest displacement is 2e-4
  * Source   Nigam and Jennings, Bulletin of the Seismological Society of America 59 (1969) 909
  */
 double floor_task_lines(int n, const struct floor_line *rows, double w, double xi)

@@ -38,7 +38,7 @@ static double g_b(const double *u)
 	return sobol_g(u, (const double[]){0.0, 0.0, 1.0, 2.0});
 }
 
-/* Smooth but for a cusp at equal frequencies, like an amplification: f_e, f_2, mass ratio, restitution at f_1 = 2. */
+/* Smooth except for a cusp at equal frequencies, like an amplification; inputs f_e, f_2, mass ratio, restitution; f_1 = 2. */
 static double cusp(const double *u)
 {
 	double fe = 0.5 + 4.5 * u[0], f2 = 0.5 + 4.5 * u[1], f1 = 2.0;

@@ -11,7 +11,7 @@
 
 enum {
 	BLOCKS_MAX = 4000,
-	LISTED_S = 60, /* within which launchers start */
+	LISTED_S = 60, /* [s] limit for launchers to start */
 };
 
 double groups_now(void)
@@ -101,7 +101,7 @@ void groups_records(const char *checkpoint, int *n_once, int *n_more)
 	char *at = memchr(bytes, '\n', n);
 	assert_non_null(at);
 	for (at++; at < bytes + n;) {
-		uint32_t place[2]; // block, doubles
+		uint32_t place[2]; // number of the block, number of doubles
 		memcpy(place, at, sizeof place);
 		assert_true(place[0] < BLOCKS_MAX);
 		of_block[place[0]]++;

@@ -15,7 +15,7 @@ enum {
 	GAPS_MAX = 200000,
 	PROCESSORS_MAX = 64,
 };
-#define LATE_S 0.002 /* a wake that is as late as this was not due to the kernel */
+#define LATE_S 0.002 /* [s] a later wake-up is attributed to a pause of the host, not to the scheduler */
 
 struct gap {
 	double start, end; /* [s] of the wall clock */
@@ -80,7 +80,7 @@ bool host_pauses_between(double from, double to)
 {
 	for (int s = 0; s < n_sentinels; s++) {
 		const struct sentinel *sentinel = &sentinels[s];
-		// the first gap that ends late enough: they are in order
+		// binary search for the first gap that ends late enough: gaps are in temporal order
 		int low = 0, high = sentinel->n;
 		while (low < high) {
 			int middle = (low + high) / 2;

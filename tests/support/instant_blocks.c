@@ -1,4 +1,4 @@
-/* Linked into a worker in place of pound_run_block: a block sleeps for POUND_BLOCK_US [us], and its values are zeros.  The
+/* Replaces pound_run_block in a worker: a block sleeps for POUND_BLOCK_US [us], and its values are zeros.  The
  * remaining time is the cost of assigning blocks, sending their values and storing them. */
 #include <stdlib.h>
 #include <unistd.h>

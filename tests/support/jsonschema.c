@@ -26,7 +26,7 @@ static bool wrong(const struct place *at, const char *format, ...)
 	return false;
 }
 
-/* A member's name as part of a pointer. */
+/* Escapes a member name as a segment of a JSON Pointer. */
 static void step(char *pointer, const char *name)
 {
 	size_t n = strlen(pointer);
@@ -130,7 +130,7 @@ static bool members(const struct place *at)
 	return true;
 }
 
-/* Whether enough of the schemas of a list take the value. */
+/* Whether the value is valid for one (oneOf), at least one (anyOf) or all (allOf) schemas of a list. */
 static bool of_list(const struct place *at, const char *list)
 {
 	char schema[PATH_SIZE];

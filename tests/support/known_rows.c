@@ -128,7 +128,7 @@ int row_known(struct row *row, enum row_known which)
 	return lay[which](row);
 }
 
-/* A row of its own for every number: any law and damping, up to four buildings or a wall, levels within stories. */
+/* A random row for each number: any law and damping, up to four buildings or a wall, levels within stories. */
 int row_random(struct row *r, uint64_t number)
 {
 	uint64_t seed = number * 2654435761u + 88172645463325252u;

@@ -1,10 +1,10 @@
 /* oracle.c - two oscillators with a contact by classical Runge-Kutta in extended precision.
  *
- *   1. u1, v1, u2, v2 and the impulse of the contact are stepped with a fixed step; the state of the laws and of the contact
+ *   1. u1, v1, u2, v2 and the impulse of the contact are integrated with a fixed step; the state of the laws and of the contact
  *      is constant during a step and updated at its end.
  *   2. `located`: a step in which a law's branch, the sign of a velocity or the contact changes is bisected to end
  *      just past the first change, so every step is smooth and the error falls with the fourth power of the step.
- *      Otherwise nothing is located and it falls with the first power.
+ *      Otherwise no change is located, and the error falls with the first power.
  *   3. Forces come from the laws' definitions in oracle_law.c.
  *
  * Its error is about the difference between two step lengths, as long as the motion is not chaotic. */
@@ -18,10 +18,10 @@ typedef long double real;
 
 enum { U1, V1, U2, V2, IMPULSE, STATES };
 
-// cuts of one step; more are the rounding noise of a velocity that is zero
+// most cuts of one step; more are due to rounding noise of a velocity near zero
 enum { CUTS_MAX = 16 };
 
-// of a touching step: how near an event is located, and still wide enough to distinguish a grazing start from rounding
+// tolerance of event location, relative to the step in contact; large enough to distinguish a grazing start from rounding
 static const real near_event = 1e-12L;
 
 static const real pi = 3.14159265358979323846264338327950288L;
@@ -97,7 +97,7 @@ static void runge_kutta(const struct pair *pair, const struct interval *in, real
 	}
 }
 
-// a number that changes wherever a step should end
+// a number that changes at every event where a step should end
 static int label(const struct pair *pair, const real y[STATES])
 {
 	int l = touches(pair, y);
@@ -106,11 +106,11 @@ static int label(const struct pair *pair, const real y[STATES])
 		int branch = oracle_law_branch(law, y[2 * body], y[2 * body + 1]);
 		l = 16 * l + 2 * (branch + 2) + (y[2 * body + 1] > 0);
 	}
-	// the closest approach of bodies that pass without touching is where a short touch would be missed
+	// ending a step at the closest approach avoids missing a short contact
 	return 2 * l + (y[V1] > y[V2]);
 }
 
-// the shortest step after which the label is another one than at y; `end` holds the state at h
+// the shortest step after which the label differs from its value at y; `end` holds the state at h
 static real bisected(const struct pair *pair, const struct interval *in, real s, real h, const real y[STATES],
                      real end[STATES])
 {
@@ -154,7 +154,7 @@ static void contact_ends(struct trajectory *at)
 	};
 }
 
-// what holds at the end of a step: memories, touching, largest values
+// updates memories, contact and maxima at the end of a step
 static void settle(struct pair *pair, struct trajectory *at)
 {
 	for (int body = 0; body < 2; body++) {
@@ -171,11 +171,11 @@ static void settle(struct pair *pair, struct trajectory *at)
 	pair->touching = touching;
 }
 
-// one nominal step, in as many pieces as its branches need; ends early when the contact opens or closes
+// one nominal step, cut at branch changes; ends early when the contact opens or closes
 static void step(struct pair *pair, const struct interval *in, real end_of_interval, struct trajectory *at)
 {
 	real h_whole = pair->touching ? pair->step_touching : pair->step_free;
-	// from rest everything starts with powers of time, of which one step sees nothing
+	// from rest, displacements start as powers of time, which one long step does not resolve
 	real h_start = (at->time + at->s) / 32 + h_whole / 1000;
 	real goal = fminl(at->s + fminl(h_whole, h_start), end_of_interval);
 	bool touching = pair->touching;
@@ -222,7 +222,7 @@ static real damping_ratio_of_contact(real restitution)
 	return -l / sqrtl(pi * pi + l * l);
 }
 
-// yield: of each body, 0: its law is linear
+// yield: yield displacement of each body, 0: linear law
 static struct pair pair_of(const struct pound_scene *scene, const double yield[2],
                            const struct oracle_method *method)
 {
@@ -278,7 +278,7 @@ static double reduction_factor(const struct pound_scene *scene, int body)
 	return ratio >= 1.0 / 6.0 ? mu : 1 + (mu - 1) * 6 * ratio;
 }
 
-// yield displacement of each body, 0 where the law has none
+// yield displacement of each body, 0: linear law or wall
 static void yield_displacements(const struct pound_scene *scene, const struct oracle_motion *motion,
                                 const struct oracle_method *method, double yield[2])
 {
@@ -295,7 +295,7 @@ static void yield_displacements(const struct pound_scene *scene, const struct or
 		yield[body] = !has_yield        ? 0
 		              : !searched[body] ? law->yield_displacement
 		                                : (double)elastic.u_max[body] / reduction_factor(scene, body);
-		assert(!searched[body] || law->corrections <= 1); // more are a search, which is not for an oracle
+		assert(!searched[body] || law->corrections <= 1); // the oracle has no iterative search
 		corrected |= searched[body] && law->corrections == 1;
 	}
 	if (!corrected)
@@ -306,13 +306,13 @@ static void yield_displacements(const struct pound_scene *scene, const struct or
 			yield[body] = (double)run.u_max[body] / law_of(scene, body)->target_demand;
 }
 
-/* Response of a scene to one ground motion, as the engine should give it.
+/* Response of a scene to one ground motion, for comparison with the engine.
  *
  * Given    scene     -   excitation: only its type and frequency, for the reduction factor of the yield displacement
  *          motion    -   the ground's acceleration
  *          start     -   state at time 0, NULL: at rest
- * Returns  trace     -   every contact, NULL: not wanted
- *          value     -   NAN for what the scene does not have
+ * Returns  trace     -   all contacts; NULL: not requested
+ *          value     -   NAN for measures that the scene does not have
  *
  * Valid    The difference of two values of method->radians bounds the error while the motion is not chaotic.
  * Test     unit_oracle

@@ -9,7 +9,7 @@
 
 typedef long double real;
 
-// how near its surface a law counts as on it; thousands of roundings of a long double
+// relative tolerance within which a law counts as on its yield surface; thousands of long double roundings
 static const real near_one = 1 - 1e-15L;
 
 struct definition {
@@ -59,7 +59,7 @@ static int linear_branch(const struct oracle_law *law, real u, real v)
 	return 0;
 }
 
-// a spring k2 beside a spring k - k2 with a slider of strength (k - k2) yield; memory[0]: the slider's place
+// a spring k2 beside a spring k - k2 with a slider of strength (k - k2) yield; memory[0]: position of the slider
 static real elastoplastic_force(const struct oracle_law *law, real u)
 {
 	return law->k2 * u + (law->k - law->k2) * clipped(u - law->memory[0], law->yield);
@@ -85,7 +85,7 @@ static int nonlinear_elastic_branch(const struct oracle_law *law, real u, real v
 	return fabsl(u) > law->yield ? sign_of(u) : 0;
 }
 
-// memory[side]: the farthest distance reached on that side, at first the yield displacement
+// memory[side]: largest displacement reached on that side, initially the yield displacement
 static void origin_oriented_start(struct oracle_law *law)
 {
 	law->memory[0] = law->memory[1] = law->yield;
@@ -118,9 +118,9 @@ static const struct definition definitions[] = {
 
 enum { N_DEFINITIONS = sizeof definitions / sizeof definitions[0] };
 
-/* A law at rest and untouched.
+/* A law in its initial state.
  *
- * Given    name             -    as a study document has it
+ * Given    name             -    as in a study document
  *          k                N/m  initial stiffness, > 0
  *          hardening_ratio  -    second slope over first
  *          yield            m    end of the first slope, > 0; not used by `linear`
@@ -137,19 +137,19 @@ struct oracle_law oracle_law(const char *name, long double k, double hardening_r
 	return law;
 }
 
-/* Force at u of a law that has not been farther since it settled last. */
+/* Force at u; since the last oracle_law_settle, no displacement was beyond u. */
 long double oracle_law_force(const struct oracle_law *law, long double u)
 {
 	return definitions[law->row].force(law, u);
 }
 
-/* Lets the law remember that it was at u. */
+/* Updates the memory of the law with displacement u. */
 void oracle_law_settle(struct oracle_law *law, long double u)
 {
 	definitions[law->row].settle(law, u);
 }
 
-/* Number of the piece a law follows at u moving with v; the force has a kink where it changes. */
+/* Number of the branch at displacement u and velocity v; the force has a kink where the number changes. */
 int oracle_law_branch(const struct oracle_law *law, long double u, long double v)
 {
 	return definitions[law->row].branch(law, u, v);

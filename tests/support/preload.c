@@ -22,7 +22,7 @@
 
 enum { FILES_MAX = 4096 };
 
-static struct faults *faults;        /* NULL: not there yet, or not wanted */
+static struct faults *faults;        /* NULL: not attached yet, or no faults requested */
 static int record = -1;              /* file descriptor */
 static signed char kinds[FILES_MAX]; /* enum faults_file + 1 of a file descriptor, 0: another */
 
@@ -45,7 +45,7 @@ __attribute__((constructor)) static void begin(void)
 	faults = mine;
 }
 
-/* enum faults_file + 1 of a path, 0: another */
+/* enum faults_file + 1 of a path, 0: another file */
 static int kind_of(const char *path)
 {
 	static const char *const ends[] = {".db", "-wal", "-journal"};
@@ -74,13 +74,13 @@ static void note(int event, int kind, int64_t offset, const void *bytes, size_t 
 		abort();
 }
 
-/* Counts a call down; whether it is the one. */
+/* Decrements a countdown of calls; true for the call that reaches its end. */
 static bool due(atomic_long *calls)
 {
 	return atomic_load(calls) > 0 && atomic_fetch_sub(calls, 1) == 1;
 }
 
-/* Whether a call on the disk fails, with `of_1000` of them failing by chance. */
+/* Whether a disk call is to fail: at random with probability of_1000 / 1000, or by countdown. */
 static bool fails(int of_1000)
 {
 	static _Thread_local uint64_t state = 88172645463325252;
@@ -183,7 +183,7 @@ int clock_gettime(clockid_t clock, struct timespec *time)
 	return status;
 }
 
-/* The server prepares its statements when it has seen that its settings hold. */
+/* For a test, sets synchronous = NORMAL here, because the server prepares its statements after the check of its settings. */
 int sqlite3_prepare_v3(sqlite3 *db, const char *sql, int n, unsigned flags, sqlite3_stmt **statement,
                        const char **rest)
 {

@@ -21,7 +21,7 @@ static void give_up(const char *what)
 	abort();
 }
 
-/* Does not return: the child becomes the program. */
+/* Replaces the child by the program; does not return. */
 static void become(const char *const arguments[])
 {
 	const char *build = getenv("POUND_BUILD");
@@ -41,7 +41,7 @@ static int exit_status(int status)
 	return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-/* Reads both ends until they close, while the input is being written. */
+/* Reads both outputs until they close, and meanwhile writes the input. */
 static void exchange(int in, const char *input, int out, FILE *out_file, int err, FILE *err_file)
 {
 	size_t n = input ? strlen(input) : 0, written = 0;
@@ -57,7 +57,7 @@ static void exchange(int in, const char *input, int out, FILE *out_file, int err
 			give_up("poll");
 		if (ends[0].fd >= 0 && ends[0].revents) {
 			ssize_t k = write(in, input + written, n - written);
-			// a program that does not want the rest has closed its end
+			// a program that does not read the remaining input has closed its end
 			written = k < 0 ? n : written + (size_t)k;
 		}
 		for (int i = 1; i < 3; i++) {
@@ -112,7 +112,7 @@ void program_expect(const struct program_outcome *outcome, int status)
 {
 	if (outcome->status == status)
 		return;
-	// not by print_error, which cuts off long texts
+	// not with print_error, which truncates long texts
 	fprintf(stderr, "%sstderr:\n%sstatus %d instead of %d\n", outcome->out, outcome->err, outcome->status,
 	        status);
 	fail();
@@ -131,7 +131,7 @@ pid_t program_start(const char *const arguments[], const char *out, const char *
 	if (pid < 0)
 		give_up("fork");
 	if (pid == 0) {
-		// a test that fails leaves nothing behind
+		// the program ends with a failed test
 		prctl(PR_SET_PDEATHSIG, SIGKILL);
 		int in_file = open("/dev/null", O_RDONLY | O_CLOEXEC);
 		int out_file = open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -185,7 +185,7 @@ char *program_drawn(const char *const arguments[], int columns)
 	int terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
 	assert_true(terminal >= 0 && grantpt(terminal) == 0 && unlockpt(terminal) == 0);
 	assert_int_equal(ioctl(terminal, TIOCSWINSZ, &size), 0);
-	// held open here, so that what was drawn is not lost when the program ends
+	// held open here, so that the output is not lost when the program ends
 	int other = open(ptsname(terminal), O_RDWR | O_NOCTTY | O_CLOEXEC);
 	setenv("TERM", "xterm", 1);
 	assert_int_equal(program_end(program_start(arguments, "/dev/null", ptsname(terminal))), 0);

@@ -1,4 +1,4 @@
-/* Requests and answers through a plain socket. */
+/* HTTP requests and responses through a plain socket. */
 #include "tests/support/raw_http.h"
 
 #include <arpa/inet.h>

@@ -19,7 +19,7 @@ struct pound_study *results_design(const char *document)
 	return study;
 }
 
-/* Takes the text and opens it. */
+/* Opens a result and frees its text. */
 static struct reading *opened(char *json, size_t length)
 {
 	struct reading *result = reading_open(json, length);

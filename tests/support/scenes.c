@@ -76,14 +76,14 @@ void specimen_free(struct specimen *specimen)
 	free(specimen->record);
 }
 
-/* Makes the scene's law another one. */
+/* Sets the law of the scene. */
 void specimen_law(struct specimen *specimen, const char *name, double yield)
 {
 	specimen->study.scene.law.type = row_of(pound_law_name, name);
 	specimen->study.scene.law.yield_displacement = yield;
 }
 
-/* Makes the excitation a record of zeros; allocates. */
+/* Sets the excitation to a record of zeros; allocates. */
 double *specimen_record(struct specimen *specimen, double time_step, int n)
 {
 	struct pound_excitation *e = &specimen->study.scene.excitation;
@@ -97,10 +97,10 @@ double *specimen_record(struct specimen *specimen, double time_step, int n)
 	return specimen->record;
 }
 
-/* Makes the record a half sine, then rest.
+/* Sets the record to a half sine followed by zeros.
  *
  * Straight lines between samples of sin(w t) are the convolution of those samples with a triangle, which multiplies
- * the sine by sinc^2(w step / 2); dividing by that leaves only what repeats every step.
+ * the sine by sinc^2(w step / 2); after division by this factor only images at multiples of the sampling rate remain.
  */
 void specimen_half_sine(struct specimen *specimen, double peak, double pulse, double duration,
                         double time_step)
@@ -122,7 +122,7 @@ double specimen_uniform(uint64_t *stream, double low, double high)
 	return low + (high - low) * (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* Makes the record twelve sines of random frequency (0.3 to 8 Hz), phase and share. */
+/* Sets the record to a sum of twelve sines of random frequency (0.3 to 8 Hz), phase and amplitude. */
 void specimen_noise(struct specimen *specimen, uint64_t seed, double peak, double time_step, int n)
 {
 	enum { SINES = 12 };
@@ -149,12 +149,12 @@ static void random_oscillator(struct pound_oscillator *o, uint64_t *stream)
 static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 {
 	struct pound_scene *scene = &specimen->study.scene;
-	// of the size of the displacements: a part of the static one of 1 m/s2 at 1 Hz
+	// of the order of the displacements: a fraction of the static displacement under 1 m/s2 at 1 Hz
 	double given = specimen_uniform(stream, -0.01, 0.01);
 	specimen_law(specimen, specimen_laws[number % SPECIMEN_LAWS], fmax(0, given));
 	scene->law.hardening_ratio = fmax(0, specimen_uniform(stream, -0.05, 0.3));
 	scene->law.target_demand = specimen_uniform(stream, 1.2, 4);
-	scene->law.corrections = specimen_uniform(stream, 0, 3) >= 1; // as used in a search: unit_yield
+	scene->law.corrections = specimen_uniform(stream, 0, 3) >= 1; // values of a search: see unit_yield
 	if (specimen_uniform(stream, 0, 1) > 0.25)
 		return;
 	struct pound_law common = scene->law;
@@ -164,7 +164,7 @@ static void random_law(struct specimen *specimen, uint64_t *stream, int number)
 	scene->law = common;
 }
 
-/* Makes a scene out of a number: laws alternate, and so on. */
+/* Sets a random scene determined by a number; the law, tension and first sample depend on its remainders. */
 void specimen_random(struct specimen *specimen, int number, double time_step, int n)
 {
 	uint64_t stream = 1000 + (uint64_t)number;
@@ -183,7 +183,7 @@ void specimen_random(struct specimen *specimen, int number, double time_step, in
 		specimen->record[0] = 0;
 }
 
-/* What presses at a sample, as a share of the most: it rises, stays, goes to and fro, and is gone at the end. */
+/* Contact force at a sample, as a share of the plateau: it rises, stays, oscillates, and is 0 in the last 50 samples. */
 static double pressing(int t, int rise, int from, int period, double share, int n)
 {
 	if (t >= n - 50)
@@ -361,7 +361,7 @@ struct pound_run *specimen_run(const struct pound_study *study)
 	return run;
 }
 
-/* The engine's response of the specimen; it must succeed. */
+/* Response of the specimen by the engine; the run must succeed. */
 struct pound_response specimen_engine(const struct specimen *specimen)
 {
 	struct pound_run *run = specimen_run(&specimen->study);
@@ -372,7 +372,7 @@ struct pound_response specimen_engine(const struct specimen *specimen)
 	return response;
 }
 
-/* The oracle's response of the specimen, events located. */
+/* Response of the specimen by the oracle with located events. */
 struct pound_response specimen_oracle(const struct specimen *specimen, double radians)
 {
 	const struct pound_excitation *e = &specimen->study.scene.excitation;

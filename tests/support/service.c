@@ -16,7 +16,7 @@
 
 #include "schema/json/json_pointer.h"
 
-enum { WAIT_MAX_S = 120 }; /* a study that takes longer hangs */
+enum { WAIT_MAX_S = 120 }; /* [s] a longer study counts as hung */
 
 struct service *service_new(void)
 {
@@ -40,7 +40,7 @@ struct service *service_with(const char *const settings[][2], int n_workers)
 	return service;
 }
 
-/* What a sanitizer has to say about a server is in its log, however it ended. */
+/* Fails if the log of the server has a sanitizer report; the exit status need not show it. */
 static void expect_no_report(const struct service *service)
 {
 	char line[512];

@@ -33,7 +33,7 @@ double stub_model_value(const double x[3])
 	return sin(x[0]) + 7.0 * sin(x[1]) * sin(x[1]) + 0.1 * pow(x[2], 4) * sin(x[0]);
 }
 
-/* Mixed bits of the inputs, so that which runs fail is chance, and the same in every session. */
+/* Hash of the inputs: selects the runs that fail pseudorandomly, but equally in every session. */
 static unsigned mixed(const double x[3])
 {
 	unsigned long long bits, sum = 0;
@@ -160,7 +160,7 @@ static void completed(void *of, struct MHD_Connection *connection, void **kept,
 	free(*kept);
 }
 
-/* Does not return: the child serves until it is ended, or its parent ends. */
+/* Runs in the child and does not return: serves until the child is killed or its parent ends. */
 static void serve(struct stub *stub, int port_to)
 {
 	prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -115,7 +115,7 @@ static void say_scene(struct text *text, int signals_most)
 	say_excitation(text, signals_most);
 }
 
-/* A row of buildings: the first two have a frequency and a mass that an input may vary. */
+/* A row of buildings; the first two have a frequency and a mass, which an input may vary. */
 static void say_row(struct text *text, int signals_most)
 {
 	const int n = 2 + below(POUND_BUILDINGS_MAX - 1);
@@ -189,7 +189,7 @@ static void say_sensitivity(struct text *text, bool row)
 	    "{\"path\": \"/excitation/rise\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.1, \"max\": "
 	    "0.3}}",
 	};
-	// in place of the first two
+	// for rows of buildings, in place of the first two inputs
 	static const char *const of_row[] = {
 	    "{\"path\": \"/buildings/0/frequency_hz\", \"distribution\": {\"type\": \"uniform\", \"min\": 0.5, "
 	    "\"max\": 2}}",
@@ -251,9 +251,9 @@ static void draw(struct text *text)
 
 /* Draws studies until one is valid.
  *
- * Given    seed     of the first; 0: the next one of the same sequence
+ * Given    seed     seed of a new sequence; 0: continue the present sequence
  * Returns  text     (VALID_STUDY_SIZE)
- *          drawn    counts invalid studies, too
+ *          drawn    incremented for each study drawn, valid or not
  *          value    for study_free
  */
 struct pound_study *valid_study(uint64_t seed, char *text, int *drawn)
@@ -269,9 +269,9 @@ struct pound_study *valid_study(uint64_t seed, char *text, int *drawn)
 	return study;
 }
 
-/* Seconds of CPU time that a study takes, or those after which it was stopped.
+/* CPU time that a study takes [s]; if it was stopped, the time until then.
  *
- * Given    most   s   after which it is
+ * Given    most   s   limit after which the study is stopped
  */
 double valid_study_taken(const struct pound_study *study, double most)
 {
