@@ -17,7 +17,7 @@ static enum outcome follow(struct wire *wire, const char *id)
 	return outcome;
 }
 
-/* Sends the files that a study names, except those that the server already has; each file once.
+/* Sends the files that a study names, except files that the server already has; each file once.
  *
  * Test     client_suite: files_that_the_server_has_are_not_sent_again
  */

@@ -267,7 +267,7 @@ struct pound_accuracy {
 	X(POUND_NOTE_NO_INTERVAL,                                                             \
 	  "too few rows for an interval of every index; indices without one are unreliable")    \
 	X(POUND_NOTE_ABOVE_TOTAL,                                                             \
-	  "the interval of a first-order index lies above that of its total index, which cannot be: use more rows or more signals") \
+	  "the interval of a first-order index lies above the interval of its total index, which is impossible: use more rows or signals") \
 	X(POUND_NOTE_FEW_DECIDE,                                                              \
 	  "few rows hold most of the variance, so intervals are too narrow")
 // clang-format on

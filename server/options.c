@@ -16,7 +16,7 @@
 enum {
 	WORKERS_MAX = 1024,
 	FIRST_KEY = 256, /* above all letters */
-	WRONG_USAGE = 2, /* exit status, as that of pound */
+	WRONG_USAGE = 2, /* exit status, the same as pound's */
 };
 
 #define AT(member) offsetof(struct options, member)

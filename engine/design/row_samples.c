@@ -49,7 +49,7 @@ int pound_order_samples(int order, int n_inputs)
 	return orders[order].samples(n_inputs);
 }
 
-/* Whether a mixture comes behind those of one column from one matrix. */
+/* Whether a mixture comes after the mixtures that take one column from one matrix. */
 static bool is_other(int n_inputs, unsigned mask)
 {
 	int from_b = __builtin_popcount(mask);

@@ -1,6 +1,6 @@
 /* sobol_sequence.c - Sobol' points, scrambled at random.
  *
- * 1. A column has 32 direction numbers; point i is the sum without carry (exclusive or) of those of the bits of i.
+ * 1. A column has 32 direction numbers; point i is the exclusive or of the direction numbers of the set bits of i.
  * 2. A scramble adds to every digit of a point a random choice of the digits before it, and a random digit.
  *
  * So a point needs no other one.  In base 2 the first 2^m points are spread as evenly as the columns allow, and so is

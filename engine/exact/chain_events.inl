@@ -161,7 +161,7 @@ struct link_lanes {
 	struct enclosure enclosure;
 	unsigned open, released, touching;    /* which of the three */
 	unsigned forced;                      /* touching, and ends with its force */
-	double low[W], high[W], direction[W]; /* of the branches of those that touch */
+	double low[W], high[W], direction[W]; /* of the branches of links in contact */
 	double
 	    phase_lead[W]; /* damping over stiffness, over the step: time by which the force leads the overlap */
 	double acceleration[W]; /* magnitude of the overlap's second derivative */

@@ -1,6 +1,6 @@
 /* chain_observer.inl - reports the motion of floors, piece by piece, to the observer of a chain (chain.h).
  *
- * A piece is a step up to its event, and its series are those of the step.
+ * A piece is a step up to its event, and its series are the step's.
  *
  * Included by chain.inl alone, once per lane count, after nonlinear_contact_step.inl. */
 

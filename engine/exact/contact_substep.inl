@@ -158,7 +158,7 @@ LANE_INLINE vm contact_substep(const struct lanes *g, struct contact_lanes *s, c
 	                  .v = b.v - side * p.v,
 	                  .b1 = other_body(b.b1, p.b1, side, off),
 	                  .b2 = other_body(b.b2, p.b2, side, off)};
-	// its rounding is that of base, overlap and gap
+	// its rounding comes from base, overlap and gap
 	o.error = vfma(vsplat(2), b.error + p.error, 2.0 * rounding * g->gap);
 	*edge = vmask(0);
 	if (scope->edged)

@@ -1,6 +1,6 @@
 /* observer.inl - reports the instants of a simulation to its observer (task.h).
  *
- * Ends of steps, substeps and free motion at other times are not reported: between two instants the motion is that of one linear
+ * Ends of steps, substeps and free motion at other times are not reported: between two instants the motion obeys one linear
  * system, which an observer can subdivide as needed.
  *
  * Included by exact.inl after step.inl, once per lane count. */

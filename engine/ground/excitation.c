@@ -190,7 +190,7 @@ double pound_excitation_frequency(const struct pound_excitation *e)
 	return excitations[e->type].tuned ? e->frequency_hz : 0;
 }
 
-/* Whether the signals of an excitation are random: those of a suite are where they are drawn.
+/* Whether the signals of an excitation are random: the records of a suite are random where they are drawn.
  *
  * Test     unit_excitation: only_noise_differs_from_signal_to_signal */
 bool pound_excitation_random(const struct pound_excitation *e)

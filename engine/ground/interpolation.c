@@ -1,4 +1,4 @@
-/* interpolation.c - samples between those of a record, as those of a band-limited signal. */
+/* interpolation.c - samples between the samples of a record, taken as a band-limited signal. */
 #include "engine/ground/excitation.h"
 
 #include <math.h>

@@ -152,7 +152,7 @@ struct pair {
 	double sum, product;
 };
 
-/* The poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0:  those of h by the power series of exp(A h) - 1,
+/* The poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0:  the poles of h by the power series of exp(A h) - 1,
  * A (x0, x1) = (-b x0 - c x1, x0),  whose determinant cancels nothing; from there  d -> 2 d + d^2  over twice the time.
  *
  * Valid    h times the largest pole <= 1 */

@@ -26,7 +26,7 @@ static double displacement(const struct interval *i, double t)
 	return i->u + t * (i->v + t * (0.5 * i->a + i->slope * t / 6));
 }
 
-/* Integral of a^2 to time t; its terms are those of ((a + s t)^3 - a^3)/(3 s), without the division. */
+/* Integral of a^2 to time t; the terms of ((a + s t)^3 - a^3)/(3 s), written without the division. */
 static double squared(const struct interval *i, double t)
 {
 	const double s = i->slope * t;

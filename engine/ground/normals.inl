@@ -79,7 +79,7 @@ void POUND_NORMALS(struct pound_stream stream, uint32_t first, double z[NOISE_WO
 {
 	alignas(sizeof(vu)) uint64_t word[NOISE_WORDS][NOISE_CHUNK];
 	words(stream, first, word);
-	// a root waits longest: those of all draws before the angles
+	// the square root has the longest latency: all roots first, then the angles
 	double radius[NOISE_WORDS][NOISE_CHUNK];
 	for (int w = 0; w < NOISE_WORDS; w += 2)
 		for (int l = 0; l < NOISE_CHUNK; l++)

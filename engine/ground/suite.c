@@ -39,7 +39,7 @@ void pound_suite_samples(const struct pound_excitation *suite, int *least, int *
  *
  *   factor = F f_k s_k, reversed: -F f_k s_k      s_k = 1 or intensity / reference_k
  *
- * with F the factor of the suite, f_k that of the record.
+ * with F the factor of the suite and f_k the factor of the record.
  *
  * Test     unit_suite: factors_are_those_of_their_definition; a_drawn_record_is_any_with_the_same_probability
  */

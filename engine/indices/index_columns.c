@@ -109,7 +109,7 @@ static enum pound_noise noise_of(const struct sources *s)
 }
 
 /* Half widths from the first n/8, n/4 and n/2 rows by chaos_expansion.c, with its scratch as left, and by pick-freeze; the half
- * widths of all rows are those of the indices. */
+ * widths of all rows are the half widths of the indices. */
 static void levels_fill(struct sources *s, uint64_t seed)
 {
 	const int d = s->rows->n_inputs;
@@ -194,7 +194,7 @@ static bool few_hold_most(const struct pound_rows *rows)
 	return rows_of_variance(rows) < 0.25 * rows->n_rows;
 }
 
-/* Updates the fewest effective rows with those of a used interval, unless the interval is too narrow to matter. */
+/* Updates the fewest effective rows with the rows of a used interval, unless the interval is too narrow to matter. */
 static void behind_take(const struct sources *s, struct pound_estimate estimate, double rows)
 {
 	const double narrow = 0.005;
@@ -375,10 +375,10 @@ static void columns_fill(const struct sources *s, uint64_t seed, struct pound_in
 	for (int k = 0; k < POUND_N_INDICES && !pound_stopped(s->rows->stop); k++) {
 		const struct index_column *column = &columns[k];
 		struct pound_estimate *into = indices->index[column->index];
-		const bool told = column->shared || !s->shared;
-		if (told && column->possible(s))
+		const bool valid = column->shared || !s->shared;
+		if (valid && column->possible(s))
 			column->make(s, into);
-		else if (!told || column->instead == POUND_N_INDICES)
+		else if (!valid || column->instead == POUND_N_INDICES)
 			undefined(into, d);
 		else
 			copy(s, indices->index[column->instead], into);

@@ -92,7 +92,7 @@ static double runs_effective(const struct pound_needed *needed, double gap,
 
 /* The probability that a run pounds with a gap, with its 95 % interval.
  *
- * Runs that are independent have the exact binomial interval; of clusters of runs it is that of as many independent runs as
+ * Independent runs have the exact binomial interval; clusters of runs have the interval of as many independent runs as
  * give the same variance.
  *
  * Source   Clopper and Pearson 1934, Biometrika 26, 404-413; Korn and Graubard 1998, Survey Methodology 24, 193-201

@@ -15,7 +15,7 @@
 
 static const double NORMAL_95 = 1.959963984540054; // quantile 0.975
 
-/* The rate at which an intensity within the points is exceeded; beyond them that of the nearest one. */
+/* The rate at which an intensity is exceeded, between the points of the hazard curve; beyond them the rate at the nearest point. */
 static double exceeded(const struct pound_hazard *hazard, double x)
 {
 	int k = 0;

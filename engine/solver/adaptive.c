@@ -10,7 +10,7 @@
  *    with msbdf up to the next event or sample.
  *
  * Independent of the march but for the laws and what an event is.  Pairs and rows of buildings are one scene of floors and
- * contacts (adaptive.h).  Velocities that jump are those of pairs alone. */
+ * contacts (adaptive.h).  Velocities jump in pairs only. */
 #include "engine/solver/adaptive.h"
 
 #include <assert.h>
@@ -454,7 +454,7 @@ static enum pound_status task_follow(struct adaptive_task *c, const struct pound
 }
 
 enum {
-	STATE_ROWS = 9, /* arrays of states: those of the task, one more behind its last one, and the scene's */
+	STATE_ROWS = 9, /* arrays of states: the task's, one more behind the task's last one, and the scene's */
 	ROW_FLOORS = POUND_CHAIN_FLOORS,
 	ROW_LINKS = POUND_CHAIN_LINKS,
 };

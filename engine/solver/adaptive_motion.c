@@ -119,7 +119,7 @@ static void still_fill(const struct adaptive_scene *s, const double *y)
 	}
 }
 
-/* Relative acceleration of the sides of a contact without contact [m/s2], where that of the floors is known.
+/* Relative acceleration of the sides of an open contact [m/s2], where the floors' accelerations are known.
  *
  * Not the difference of two accelerations: when the ground begins to move its rounding would decide who meets.
  */

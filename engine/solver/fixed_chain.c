@@ -1,6 +1,6 @@
 /* fixed_chain.c - Newmark's average acceleration and central differences for rows of buildings: fixed_step.c over n floors.
  *
- * 1. Steps, laws and contacts are those of fixed_step.c: a contact is looked at where a step ends.
+ * 1. Steps, laws and contacts are the same as in fixed_step.c: contacts are checked at the end of each step.
  * 2. What a step has to solve is symmetric, and stories and contacts join few floors each: floors are numbered storey by storey
  *    over all buildings, so that rows of the matrix are short (envelope.h).  It is decomposed again where a branch or a contact
  *    changes.
@@ -219,7 +219,7 @@ static void story_pull(const struct stepped_chain *c, int i, double force, doubl
 		pulled[i - 1] += force;
 }
 
-/* Adds to forces those of springs on branches and of dashpots, so many times. */
+/* Adds the forces of springs on branches and of dashpots, each times a factor. */
 static void stories_pull(struct stepped_chain *c, const struct pound_law_state *at, double dashpots,
                          const double *v)
 {
@@ -376,7 +376,7 @@ static bool newmark_round(struct stepped_chain *c, bool as_it_was)
 	return converged;
 }
 
-/* One step of average acceleration, as that of the pair (fixed_step.c); false: no equilibrium was found.
+/* One step of average acceleration, as for the pair (fixed_step.c); false: no equilibrium was found.
  *
  *   (4/h^2 M + 2/h C + K) d = M (4/h v + a - a_g) + C v - r(u) - contacts,   v1 = 2 d/h - v,  a1 = 2 (v1 - v)/h - a
  */
@@ -474,7 +474,7 @@ static bool central_solve(struct stepped_chain *c)
 	return pushes;
 }
 
-/* One step of central differences with velocities w half a step before and after, as that of the pair (fixed_step.c):
+/* One step of central differences with velocities w half a step before and after, as for the pair (fixed_step.c):
  *
  *   M (w1 - w)/h + C (w1 + w)/2 + r(u) + contacts = -M a_g,   v = (w1 + w)/2
  */

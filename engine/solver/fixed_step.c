@@ -352,7 +352,7 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_t
  *          task      -         -       see task.h
  *          stop      -         -       looked at between samples; NULL: never
  * Returns  result    -         -       all 0 but the status where it failed
- * Status   POUND_UNSTABLE  the step is above 2/w of the highest angular frequency w, where bodies touched that of the touching
+ * Status   POUND_UNSTABLE  the step is above 2/w of the highest angular frequency w, where bodies touched of the bodies in contact
  *                          pair, or velocities grew beyond any the ground motion can give
  *          POUND_STOPPED   stop was set
  *

@@ -187,7 +187,7 @@ void pound_pair_result(const struct pound_task *task, const struct pound_chain_r
 
 /* Runs a pair as a chain.
  *
- * Returns  result   as that of the march of pairs
+ * Returns  result   with the members of the march of pairs
  */
 static void chain_run(const struct pound_task *task, struct pound_task_result *result, void *scratch,
                       const atomic_bool *stop)

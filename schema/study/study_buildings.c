@@ -424,7 +424,7 @@ static void check_gaps(const struct pound_study *study, struct problems *problem
 	if (separation && pound_row_contacts(&study->scene) > POUND_GAPS_OF_ROW_MAX &&
 	    !problems_at(problems, "/scene/contacts"))
 		problems_add(problems, "/scene/contacts",
-		             "kind \"%s\" takes at most %d contacts, this row has %d: list those that are wanted",
+		             "kind \"%s\" takes at most %d contacts, this row has %d: list at most that many",
 		             study_kind_name(study->kind), POUND_GAPS_OF_ROW_MAX, pound_row_contacts(&study->scene));
 }
 

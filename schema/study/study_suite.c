@@ -65,11 +65,11 @@ static void compare(struct reader *r, const struct suite_record *of, const struc
 {
 	char what[96];
 	if (of->unit && strcmp(of->unit, record->unit) != 0) {
-		snprintf(what, sizeof what, "is not that of the file, which says %s", record->unit);
+		snprintf(what, sizeof what, "differs from the file's, %s", record->unit);
 		complain(r, "unit", what);
 	}
 	if (of->record.time_step > 0 && fabs(of->record.time_step / record->step - 1) > STEP_EQUAL) {
-		snprintf(what, sizeof what, "is not that of the file, which says %.15g s", record->step);
+		snprintf(what, sizeof what, "differs from the file's, %.15g s", record->step);
 		complain(r, "time_step_s", what);
 	}
 	if (of->channel > 1 && strcmp(record->format, "cosmos") != 0)
@@ -91,7 +91,7 @@ static void read_file(struct reader *r, struct suite_record *of, struct suite_so
 	}
 	study_digest(text, n, sha256);
 	if (of->sha256 && strcmp(of->sha256, sha256) != 0) {
-		snprintf(why, sizeof why, "is not that of the file, which has %s", sha256);
+		snprintf(why, sizeof why, "differs from the file's, %s", sha256);
 		complain(r, "sha256", why);
 	}
 	memcpy(source->named.sha256, sha256, sizeof sha256);
