@@ -100,7 +100,7 @@ static const char *file_take(struct checkpoint *c, checkpoint_restored *restored
 		return NULL;
 	}
 	if (strncmp(head, "pound checkpoint ", 17) != 0)
-		return "it is no checkpoint";
+		return "it is not a checkpoint file";
 	if (memcmp(head, c->head, n) != 0)
 		return "it belongs to another study or another version of pound; name another file";
 	off_t end = records_read(c, restored, to);

@@ -135,7 +135,7 @@ static enum outcome find_model(struct evaluation *e)
 		return outcome;
 	const int n = reading_count(r, "/models");
 	if (reading_number(r, "/protocolVersion") != 1.0)
-		outcome = MISTAKEN("%s: is no server of UM-Bridge 1.0", e->url);
+		outcome = MISTAKEN("%s: is not a UM-Bridge 1.0 server", e->url);
 	else if (n == 0 && !wanted)
 		outcome = MISTAKEN("%s: has no model", e->url);
 	else

@@ -211,7 +211,7 @@ static void check_table(struct argp_state *state, const struct options *options)
 		argp_error(state, "no table '%s' here; there are:%s, and all with --format table", options->table,
 		           TABLES);
 	if (options->table && strcmp(options->format, "json") == 0)
-		argp_error(state, "--table takes --format table or --format csv with it");
+		argp_error(state, "--table needs --format table or --format csv");
 	free(padded);
 }
 
@@ -357,7 +357,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 		if (strchr(parsing->command->takes, 'L'))
 			check_ranks(state);
 		if (options->evaluate.replicates && !options->evaluate.seed_member)
-			argp_error(state, "--replicates needs --seed-member: equal calls may have equal answers");
+			argp_error(state, "--replicates needs --seed-member: otherwise all replicates may be equal");
 		if (!options->argument && *parsing->command->arguments && *parsing->command->arguments != '[')
 			argp_error(state, "%s is missing", parsing->command->arguments);
 		if (!options->second && strchr(parsing->command->arguments, ' ') &&

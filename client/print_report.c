@@ -25,7 +25,7 @@ static enum outcome page_print(const struct parts *parts, const char *name)
 	if (page)
 		fwrite(page, 1, n, stdout);
 	else
-		command_complain("%s: this is no result of a study: `pound run STUDY.json` prints one", name);
+		command_complain("%s: this is not the result of a study: `pound run STUDY.json` prints one", name);
 	free(page);
 	return page ? OUTCOME_OK : OUTCOME_FAILED;
 }

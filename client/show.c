@@ -125,9 +125,8 @@ static void print_contacts(const struct reading *result, const char *at)
 		}
 	}
 	putchar('\n');
-	table_prose(
-	    0, "contacts, by the index of the building on their left and the levels they join; means over the "
-	       "signals");
+	table_prose(0, "contacts (left: index of the left building; levels: left-right), means over the "
+	               "signals");
 	table_print(table, 2);
 	table_close(table);
 }

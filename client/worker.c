@@ -37,7 +37,7 @@ int main(int argc, char **argv)
 		sense = thread_pool_take(pool, &message, body);
 	const bool refused = message.type == MESSAGE_REFUSE;
 	if (options.at && !asked && !refused)
-		fputs("pound-worker: the connection ended before a study came\n", stderr);
+		fputs("pound-worker: the connection ended before a study was received\n", stderr);
 	// _exit, because the threads of the pool still run
 	_exit(sense && !refused && (asked || !options.at) ? EXIT_SUCCESS : EXIT_FAILURE);
 }

@@ -185,7 +185,7 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 		status = figure_of(row, result, source, choice, figure);
 	else
 		snprintf(figure->detail, sizeof figure->detail,
-		         "this is no result of a study: `pound run STUDY.json` prints one");
+		         "this is not the result of a study: `pound run STUDY.json` prints one");
 	cJSON_Delete(result);
 	return status;
 }

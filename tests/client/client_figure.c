@@ -209,7 +209,7 @@ static void a_report_is_one_page_that_needs_nothing_else(void **state)
 	assert_non_null(strstr(alone.out, "It was not given"));
 	struct program_outcome wrong = POUND("report", study);
 	program_expect(&wrong, 1);
-	assert_non_null(strstr(wrong.err, "no result of a study"));
+	assert_non_null(strstr(wrong.err, "not the result of a study"));
 	program_free(&wrong);
 	wrong = POUND("report", "0000000000000000");
 	program_expect(&wrong, 1);

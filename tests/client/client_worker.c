@@ -420,7 +420,7 @@ static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_
 static void a_checkpoint_of_another_study_or_program_is_refused(void **state)
 {
 	static const char *const others[] = {"pound checkpoint 0.0.1 0123456789abcdef\n", "something else\n"};
-	static const char *const words[] = {"another study or another version", "no checkpoint"};
+	static const char *const words[] = {"another study or another version", "not a checkpoint file"};
 	(void)state;
 	for (int i = 0; i < 2; i++) {
 		bytes_write(others[i], strlen(others[i]));
