@@ -4,7 +4,7 @@
  *
  *   force_amplification: mean 1.071, variance 0.02893, noise share 0.113
  *     input    S1 [95 % interval]       ST [95 % interval]       ST from 0 to 1
- *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |########            |
+ *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |#######         |
  *     widest interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
  *     twice the rows leave 0.71 of it, 4000 rows half of it
  *     300 runs checked, differences 1e-14 (median) to 2e-13: no index moves by over 3e-15
@@ -22,7 +22,7 @@
 #include <string.h>
 
 enum { PATH_SIZE = 128 };    /* of the JSON Pointer of a value in a result */
-enum { CHART = 20 };         /* columns of the chart of total indices */
+enum { CHART = 16 };         /* columns of the chart of total indices */
 enum { ESTIMATES_MAX = 32 }; /* of one list */
 enum { INDENT = 2 };
 
@@ -63,6 +63,7 @@ static void print_quoted(const struct reading *result, const char *output)
 	static const char *const columns[] = {"input", " S1 [95 % interval]", " ST [95 % interval]",
 	                                      "ST from 0 to 1", NULL};
 	struct table *table = table_open(1, columns);
+	table_keep_chart(table);
 	char input[PATH_SIZE], text[80];
 	for (int j = 0; j < reading_count(result, "%s/inputs", output); j++) {
 		snprintf(input, sizeof input, "%s/inputs/%d", output, j);
@@ -314,6 +315,7 @@ static void print_curves(const struct reading *result, const char *output)
 	static const char *const columns[] = {
 	    "input", "from", "to", "lowest", "highest", "mean given it: 0 lowest ... 9 highest", NULL};
 	struct table *table = table_open(1, columns);
+	table_keep_chart(table);
 	for (int j = 0; j < reading_count(result, "%s/conditional_means", output); j++) {
 		char curve[PATH_SIZE], digits[128] = "";
 		double low = NAN, high = NAN;

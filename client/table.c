@@ -21,6 +21,7 @@ struct cell {
 struct table {
 	int n_columns, n_cells, room;
 	int n_keys;               /* first columns, repeated in every block of a folded table */
+	bool whole;               /* the last column is a chart: rather in a block of its own than cut */
 	char *names[COLUMNS_MAX]; /* (n_columns) */
 	struct cell *cells;       /* (n_cells), row-major */
 };
@@ -35,6 +36,11 @@ struct table *table_open(int n_keys, const char *const names[])
 		table->n_columns++;
 	}
 	return table;
+}
+
+void table_keep_chart(struct table *table)
+{
+	table->whole = true;
 }
 
 static struct cell *next_cell(struct table *table)
@@ -195,7 +201,7 @@ static int block_end(const struct table *table, struct layout *layout, int inden
 		used += layout->width[c] ? layout->width[c] + GAP : 0;
 	for (; end < table->n_columns; end++) {
 		const int left = TABLE_WIDTH - used;
-		const bool cut = end == first || end == table->n_columns - 1;
+		const bool cut = end == first || (end == table->n_columns - 1 && !table->whole);
 		if (cut && !layout->right[end] && left >= TEXT_LEAST && left < layout->width[end])
 			layout->width[end] = left;
 		if (end > first && layout->width[end] > left)

@@ -16,6 +16,9 @@ void table_text(struct table *table,
                 const char *text);                    /* next cell, rows fill from the left; NULL: no value */
 void table_number(struct table *table, double value); /* NAN: no value */
 
+/* The last column is a chart of characters: it gets a block of its own if it would have to be cut. */
+void table_keep_chart(struct table *table);
+
 /* Aligned: `indent` blanks before each row, numbers to the right, columns without any value left out, the middle of long
  * texts left out. */
 void table_print(const struct table *table, int indent);

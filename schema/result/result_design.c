@@ -192,7 +192,7 @@ void result_design(struct writer *w, const struct pound_study *asked, const stru
 		writer_object(w, "partial", WRITER_LINE);
 		writer_whole(w, "rows", result->rows);
 		writer_whole(w, "rows_most", pound_design_rows_most(study));
-		writer_text(w, "note", "result of the rows completed so far; the study is still running");
+		writer_text(w, "note", "result of the rows completed so far, not of the whole study");
 		writer_end(w);
 	} else if (result->n_looks || result->split.signals) {
 		writer_object(w, "stopping", WRITER_LINES);

@@ -210,9 +210,9 @@ static void look_at_rigid(struct warnings *all, const struct pound_study *study)
 		const char *name = pound_output_name(study->outputs[k]);
 		reads |= strstr(name, "acceleration") && !strstr(name, "_free_");
 	}
-	if (reads && scene->contact.present && strcmp(pound_contact_name(scene->contact.model), "rigid") == 0)
+	if (reads && scene->contact.present && pound_contact_force(scene->contact.model) == POUND_FORCE_IMPACT)
 		warn(all, "/scene/contact/model",
-		     "is rigid: accelerations with pounding do not include the impacts, which are infinite");
+		     "makes velocities jump: accelerations with pounding do not include the impacts");
 }
 
 static void look_at_steps(struct warnings *all, const struct pound_study *study)

@@ -125,7 +125,7 @@ static void a_result_says_why_its_rows_have_so_many_signals(void **state)
 	assert_non_null(json);
 	static const char *const said[] = {"\"stopping\": {", "\"pilot\": {",
 	                                   "\"between_rows\":", "\"choices\": [",
-	                                   "the widest interval is foreseen to be the narrowest for these runs"};
+	                                   "the widest interval is predicted to be the narrowest for these runs"};
 	for (size_t k = 0; k < sizeof said / sizeof said[0]; k++)
 		assert_non_null(strstr(json, said[k]));
 	free(json);
