@@ -202,16 +202,17 @@ static void behind_take(const struct sources *s, struct pound_estimate estimate,
 		*s->behind = rows;
 }
 
-/* A first-order index cannot exceed the total index.  If its interval lies above the interval of the pick-freeze total, the noise of few
- * rows passes for an effect of the input: the pick-freeze estimate is taken, which is exactly 0 for an input without effect.  Not with
- * few effective rows, where the total may have missed the rows that matter. */
+/* A first-order index cannot exceed the total index.  If its interval lies above the interval of the total, the noise of few rows passes
+ * for an effect of the input: the pick-freeze estimate is taken, which is exactly 0 for an input without effect.  Not with few
+ * effective rows, where the total may have missed the rows that matter. */
 static void first_bound(const struct sources *s, struct pound_estimate *into, bool replaced[POUND_INPUTS_MAX])
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
 	const bool usable = !s->shared && !few_hold_most(s->rows);
+	struct pound_estimate total[POUND_INPUTS_MAX];
+	narrower(s, s->corrected ? p->total : p->total_raw, s->closed.total, total);
 	for (int j = 0; j < s->rows->n_inputs; j++) {
-		const double most = (s->corrected ? p->total : p->total_raw)[j].high;
-		replaced[j] = usable && into[j].low > most;
+		replaced[j] = usable && into[j].low > total[j].high;
 		if (replaced[j])
 			into[j] = (s->corrected ? p->first : p->first_raw)[j];
 	}
