@@ -31,7 +31,7 @@ struct options {
 struct option_row {
 	const char *name;
 	int letter;           /* short form, 0: none */
-	const char *argument; /* placeholder of its value; NULL: a switch */
+	const char *argument; /* placeholder of its value; NULL: the option takes none */
 	const char *text;     /* one line of help */
 	const char *absent;   /* its default value; NULL: none */
 	size_t offset;        /* in struct options: of an int when max > 0, of a text otherwise */

@@ -55,7 +55,7 @@ struct pound_floor_instant {
 	double gap, gap_rate;                              /* clear distance, < 0: overlap [m], [m/s] */
 	double ground;                                     /* acceleration [m/s2] */
 	double
-	    push; /* force of the contact, if there is none of all on the floor, over the left mass; < 0: repulsion [m/s2] */
+	    push; /* force of the contact (without one: of all contacts on the floor) over the left mass; < 0: repulsion [m/s2] */
 };
 
 /* Calls `take` for every row of a task's history: at the samples, before and after every event, and between them as often as

@@ -3,7 +3,7 @@
  *
  * 1. For each input, polynomials that are orthonormal over its samples (Stieltjes' recurrence); a term is a product of
  *    these.  Terms are sorted by degree, so that the terms, normal equations and factor of a lower degree are the leading
- *    part of those of a higher degree.
+ *    part of the ones of a higher degree.
  * 2. The samples are dealt to folds; each fold is predicted by fits to the others, of every degree.  The degree that
  *    predicts best is chosen; its R2 of the predictions is the cross-validated R2.
  * 3. For independent inputs the squared coefficients add up to the variance and contribute to the indices of the term's

@@ -205,14 +205,14 @@ static void behind_take(const struct sources *s, struct pound_estimate estimate,
 /* A first-order index cannot exceed the total index.  If its interval lies above the interval of the total, the noise of few rows passes
  * for an effect of the input: the pick-freeze estimate is taken, which is exactly 0 for an input without effect.  Not with few
  * effective rows, where the total may have missed the rows that matter. */
-static void first_bound(const struct sources *s, struct pound_estimate *into, bool replaced[POUND_INPUTS_MAX])
+static void first_bound(const struct sources *s, bool heavy, struct pound_estimate *into,
+                        bool replaced[POUND_INPUTS_MAX])
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
-	const bool usable = !s->shared && !few_hold_most(s->rows);
 	struct pound_estimate total[POUND_INPUTS_MAX];
 	narrower(s, s->corrected ? p->total : p->total_raw, s->closed.total, total);
 	for (int j = 0; j < s->rows->n_inputs; j++) {
-		replaced[j] = usable && into[j].low > total[j].high;
+		replaced[j] = !s->shared && !heavy && into[j].low > total[j].high;
 		if (replaced[j])
 			into[j] = (s->corrected ? p->first : p->first_raw)[j];
 	}
@@ -254,7 +254,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		behind_take(s, into[j],
 		            neighbours && !same(into[j], s->closed.first[j]) ? behind[j] : s->closed.first_rows[j]);
 	}
-	first_bound(s, into, replaced);
+	first_bound(s, heavy, into, replaced);
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];

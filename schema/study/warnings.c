@@ -154,33 +154,27 @@ static double elevation(const struct pound_building *building, double level)
 	return sum;
 }
 
-/* Contacts join levels by number: at other heights they are probably wrong. */
+/* Contacts join levels by number: at other heights they are probably wrong.  Without a list of contacts the first of each gap is named. */
 static void look_at_levels(struct warnings *all, const struct pound_study *study)
 {
 	const struct pound_scene *scene = &study->scene;
 	const double most = 0.02; // levels are written with few digits
-	for (int k = 0; k < scene->n_contacts; k++) {
-		const struct pound_row_contact *contact = &scene->contacts[k];
-		const struct pound_building *left = &scene->buildings[contact->left_building], *right = left + 1;
-		const double low = elevation(left, contact->levels[0]), high = elevation(right, contact->levels[1]);
-		char pointer[48];
-		if (right->rigid_wall || !(fabs(low - high) > most * fmax(low, high)))
+	for (int k = 0, named = -1; k < pound_row_contacts(scene); k++) {
+		struct pound_row_contact contact;
+		pound_row_contact_of(scene, k, &contact);
+		const struct pound_building *left = &scene->buildings[contact.left_building], *right = left + 1;
+		const double low = elevation(left, contact.levels[0]), high = elevation(right, contact.levels[1]);
+		char pointer[48] = "/scene/contacts";
+		if (right->rigid_wall || named == contact.left_building ||
+		    !(fabs(low - high) > most * fmax(low, high)))
 			continue;
-		snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels", k);
-		warn(all, pointer, "are at heights of %.4g m and %.4g m", low, high);
-	}
-	for (int b = 0; scene->n_contacts == 0 && scene->contact.present && b + 1 < scene->n_buildings; b++) {
-		const struct pound_building *left = &scene->buildings[b], *right = left + 1;
-		for (int i = 1; !right->rigid_wall && i <= left->storeys && i <= right->storeys; i++) {
-			const double low = elevation(left, i), high = elevation(right, i);
-			if (!(fabs(low - high) > most * fmax(low, high)))
-				continue;
-			warn(all, "/scene/contacts",
-			     "is absent, so floors meet by number: floor %d is at %.4g m in building %d and at %.4g m in "
-			     "building %d",
-			     i, low, b, high, b + 1);
-			break;
-		}
+		if (scene->n_contacts)
+			snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels", k);
+		else
+			named = contact.left_building;
+		warn(all, pointer, "join level %.4g of building %d at %.4g m and level %.4g of building %d at %.4g m",
+		     contact.levels[0], contact.left_building, low, contact.levels[1], contact.left_building + 1,
+		     high);
 	}
 }
 
@@ -210,7 +204,14 @@ static void look_at_rigid(struct warnings *all, const struct pound_study *study)
 		const char *name = pound_output_name(study->outputs[k]);
 		reads |= strstr(name, "acceleration") && !strstr(name, "_free_");
 	}
-	if (reads && scene->contact.present && pound_contact_force(scene->contact.model) == POUND_FORCE_IMPACT)
+	bool jumps = !scene->n_buildings && scene->contact.present &&
+	             pound_contact_force(scene->contact.model) == POUND_FORCE_IMPACT;
+	for (int k = 0; k < pound_row_contacts(scene) && scene->n_buildings; k++) {
+		struct pound_row_contact contact;
+		pound_row_contact_of(scene, k, &contact);
+		jumps |= pound_contact_force(contact.contact.model) == POUND_FORCE_IMPACT;
+	}
+	if (reads && jumps)
 		warn(all, "/scene/contact/model",
 		     "makes velocities jump: accelerations with pounding do not include the impacts");
 }
@@ -329,7 +330,7 @@ static void look_at_demands(struct warnings *all, const struct pound_study *stud
 	     b++) {
 		const struct pound_building *building = &study->scene.buildings[b];
 		const bool own = building->has_law;
-		const struct pound_law *law = own ? &building->law : &study->scene.law;
+		const struct pound_law *law = pound_row_law(&study->scene, b);
 		double least = INFINITY, most = 0;
 		char pointer[64];
 		if (is_wall(study, b) ||

@@ -82,14 +82,13 @@ static const struct {
     {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
          ", \"frequency_hz\": 3, \"height_m\": [3, 4]}",
          "\"gap_m\": 0", SHORT),
-     "/scene/contacts",
-     "is absent, so floors meet by number: floor 2 is at 6 m in building 0 and at 7 m in building 1", false},
+     "/scene/contacts", "join level 2 of building 0 at 6 m and level 2 of building 1 at 7 m", false},
     {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
          ", \"frequency_hz\": 3, \"height_m\": 4}",
          "\"gap_m\": 0}, \"contacts\": [{\"levels\": [1, 0.75]}, {\"levels\": [2, 2]}], \"law\": {\"type\": "
          "\"linear\"",
          SHORT),
-     "/scene/contacts/1/levels", "are at heights of 6 m and 8 m", false},
+     "/scene/contacts/1/levels", "join level 2 of building 0 at 6 m and level 2 of building 1 at 8 m", false},
     {ROW("{" STOREYS ", \"frequency_hz\": 2, \"damping\": \"rayleigh\", \"damping_modes\": [1, 4]}, {" STOREYS
          ", \"frequency_hz\": 3}",
          "\"gap_m\": 0", SHORT),
@@ -97,6 +96,11 @@ static const struct {
      false},
     {ROW("{" STOREYS ", \"frequency_hz\": 2}, {" STOREYS ", \"frequency_hz\": 3}",
          "\"gap_m\": 0, \"model\": \"rigid\"", SHORT),
+     "/scene/contact/model", "makes velocities jump: accelerations with pounding do not include the impacts",
+     false},
+    {"{\"kind\": \"response\", \"scene\": {\"oscillators\": [" BODIES
+     "], \"contact\": {\"model\": \"rigid\"}, \"excitation\": {" SHORT
+     "}}, \"outputs\": [\"peak_acceleration_m_s2\"]}",
      "/scene/contact/model", "makes velocities jump: accelerations with pounding do not include the impacts",
      false},
     {ROW("{" STOREYS ", \"frequency_hz\": 2, \"law\": {\"type\": \"elastoplastic\", \"target_demand\": 2}}, "
