@@ -127,7 +127,7 @@ int pound_design_order(const struct pound_study *study)
 	return study->design.order > needed ? study->design.order : needed;
 }
 
-/* Samples of a row: those of the order, then one for each group of inputs. */
+/* Samples of a row: by the order of the design, plus one for each group of inputs. */
 int pound_design_samples(const struct pound_study *study)
 {
 	return pound_order_samples(pound_design_order(study), study->n_inputs) + study->n_groups;
