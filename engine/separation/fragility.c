@@ -69,7 +69,8 @@ static struct likelihood likelihood_of(const struct pound_stripes *stripes, int 
 	return l;
 }
 
-/* Whether the likelihood has a maximum: the intensities of runs that pound and of runs that do not overlap, in both ways. */
+/* Whether the likelihood has a maximum at finite a and b: a run without pounding is above the lowest intensity with pounding, and
+ * a run with pounding is above the lowest intensity without. */
 static bool overlap(const struct pound_stripes *stripes, double gap)
 {
 	int first_pounds = stripes->n, last_pounds = -1, first_survives = stripes->n, last_survives = -1;
