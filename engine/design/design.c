@@ -1,9 +1,9 @@
-/* design.c - designs by name.  A design fills one column of A or B with probabilities u in (0, 1); the quantile of
- * the input's distribution makes values of them.
+/* design.c - designs by name.  A design fills columns of A and B with probabilities u in (0, 1), which the quantile function
+ * of the input's distribution turns into values.
  *
- * A number is a function of (seed, row, matrix, input), and of the number of rows for a Latin hypercube that does not
- * grow.  A design that grows until its intervals are narrow does so in independent Latin hypercubes of some rows, or in
- * several scrambled nets side by side, each twice as long as before. */
+ * A number depends on (seed, row, matrix, input) only; in a Latin hypercube also on its number of rows.  A growing design has
+ * looks (interim analyses) until its intervals are narrow.  Between looks it adds batches of rows, each an independent Latin
+ * hypercube, or doubles several interleaved scrambled Sobol' sequences. */
 #include "engine/design/design.h"
 
 #include "engine/design/sobol_sequence.h"
@@ -12,19 +12,19 @@
 #include <assert.h>
 
 enum {
-	BATCH = 100,        /* rows of a Latin hypercube of a design that grows */
-	BATCH_LEAST = 10,   /* when max_runs leaves no more */
-	BATCHES_FIRST = 10, /* and how many there are at first: fewer have no good interval */
-	BATCHES_NEXT = 2,   /* and come at a time */
-	POINTS_FIRST = 16,  /* of each net at first */
-	RANDOMISATIONS = 8, /* unless the study says */
+	BATCH = 100,        /* rows of a batch */
+	BATCH_LEAST = 10,   /* ... if max_runs does not allow more */
+	BATCHES_FIRST = 10, /* batches at the first look: fewer give poor intervals */
+	BATCHES_NEXT = 2,   /* batches added before each further look */
+	POINTS_FIRST = 16,  /* points of each Sobol' sequence at the first look */
+	RANDOMISATIONS = 8, /* Sobol' sequences, if the study does not set their number */
 };
 
 struct design {
 	const char *name;
 	void (*column)(const struct pound_study *study, int matrix, int input, int rows, const atomic_bool *stop,
 	               double *u);
-	bool nets; /* grows by doubling, in interleaved nets */
+	bool nets; /* interleaved Sobol' sequences; grows by doubling */
 };
 
 static struct pound_stream stream_of(const struct pound_study *study, int row, int matrix, int input)
@@ -51,8 +51,8 @@ static void random_column(const struct pound_study *study, int matrix, int input
 
 /* Latin hypercube column: one point in each of n equal strata of u, uniform within it, in random order.
  *
- * The place within a stratum has 32 bits and stays off its edges by 2^-33: with up to 2^20 strata neither adding
- * the stratum's number nor dividing by n can round a point into the next one.
+ * The position within a stratum has 32 bits and is at least 2^-33 from the edges: with up to 2^20 strata, neither adding the
+ * number of the stratum nor dividing by n can round a point into the next stratum.
  *
  * Source   McKay, Beckman, Conover 1979, Technometrics 21(2), 239-245; Fisher-Yates for the order
  * Test     unit_design: a_latin_hypercube_has_one_point_in_every_stratum_of_every_column
@@ -65,7 +65,7 @@ static void latin_fill(struct pound_stream stream, int rows, int stride, const a
 	for (int i = 0; i < rows && !pound_stopped(stop); i++) {
 		double place = ((double)pound_random_words(stream, i).v[0] + 0.5) * 0x1p-32;
 		double point = (i + place) / rows;
-		// the inside-out shuffle: the new point takes the place of a random earlier one, or its own
+		// inside-out shuffle: the new point goes to a random index up to i, and the point there moves to i
 		int k = (int)pound_random_below(order, i, i + 1);
 		u[(size_t)i * stride] = u[(size_t)k * stride];
 		u[(size_t)k * stride] = point;
@@ -77,7 +77,7 @@ static bool grows(const struct pound_study *study)
 	return study->design.until.half_width > 0;
 }
 
-/* One Latin hypercube of all rows; of a design that grows one of each batch. */
+/* One Latin hypercube of all rows; in a growing design one per batch. */
 static void latin_column(const struct pound_study *study, int matrix, int input, int rows,
                          const atomic_bool *stop, double *u)
 {
@@ -87,8 +87,8 @@ static void latin_column(const struct pound_study *study, int matrix, int input,
 		           u + (size_t)first * stride_of(study));
 }
 
-/* Nets side by side: row i is point i / n of net i % n.  Columns of A and B alternate, as the first columns of a net are
- * its best ones.
+/* n interleaved Sobol' sequences: row i is point i / n of sequence i % n.  Columns of A and B alternate in the dimensions of a
+ * sequence, because the first dimensions are the most uniform.
  *
  * Test     unit_design: every_net_of_a_sobol_design_is_a_net_of_its_own
  */
@@ -120,14 +120,14 @@ const char *pound_design_name(int row)
 	return row >= 0 && row < DESIGNS ? designs[row].name : NULL;
 }
 
-/* The order of a study's design: the one it asks for, or more if its estimator needs more. */
+/* The order of a study's design: the requested order, or the order that its estimator needs if that is higher. */
 int pound_design_order(const struct pound_study *study)
 {
 	const int needed = pound_estimator_order(study->design.estimator);
 	return study->design.order > needed ? study->design.order : needed;
 }
 
-/* Samples of a row. */
+/* Samples of a row: by the order of the design, plus one for each group of inputs. */
 int pound_design_samples(const struct pound_study *study)
 {
 	return pound_order_samples(pound_design_order(study), study->n_inputs) + study->n_groups;
@@ -140,13 +140,13 @@ unsigned pound_design_mask(const struct pound_study *study, int sample)
 	                          : study->groups[sample - ungrouped].inputs;
 }
 
-/* Whether rows that are near in one input are arranged in the others, not there by chance. */
+/* Whether a design is quasi-random: rows that are close in one input are related in the other inputs. */
 bool pound_design_quasi_random(int row)
 {
 	return designs[row].nets;
 }
 
-/* Pounding runs of one row of the design. */
+/* Runs of one row of the design: samples x signals x cells; outputs computed elsewhere count one signal. */
 int64_t pound_design_row_runs(const struct pound_study *study)
 {
 	int64_t runs =
@@ -163,17 +163,17 @@ static int rows_allowed(const struct pound_study *study)
 	return rows < POUND_ROWS_MAX ? (int)rows : POUND_ROWS_MAX;
 }
 
-/* Rows of a batch: fewer when max_runs leaves none for as many of the usual size. */
+/* Rows of a batch: fewer than BATCH if max_runs does not allow BATCHES_FIRST batches of that size. */
 static int batch_of(const struct pound_study *study)
 {
 	int most = rows_allowed(study) / BATCHES_FIRST;
 	return most < BATCH_LEAST ? BATCH_LEAST : most < BATCH ? most : BATCH;
 }
 
-/* The groups of rows that are independent of each other.
+/* The independent groups of rows.
  *
  * Given    study     -         -       a sensitivity study
- * Returns  value     -         -       none for a random design, and for one Latin hypercube
+ * Returns  value     -         -       n = 0: a random design or a single Latin hypercube has no groups
  *
  * Test     unit_design: rows_of_a_group_are_a_design_of_their_own
  */
@@ -188,7 +188,7 @@ struct pound_grouping pound_design_grouping(const struct pound_study *study)
 	return (struct pound_grouping){(rows_allowed(study) + batch - 1) / batch, batch};
 }
 
-/* Rows at a look, of nets that double. */
+/* Rows at a look of a design that doubles its Sobol' sequences. */
 static int net_rows(const struct pound_study *study, int allowed, int look)
 {
 	int rows = pound_design_rows_least(study);
@@ -199,7 +199,7 @@ static int net_rows(const struct pound_study *study, int allowed, int look)
 	return rows;
 }
 
-/* Rows at a look, of batches added. */
+/* Rows at a look of a design that adds batches. */
 static int batch_rows(const struct pound_study *study, int allowed, int look)
 {
 	const int batch = batch_of(study), most = allowed / batch;
@@ -209,16 +209,15 @@ static int batch_rows(const struct pound_study *study, int allowed, int look)
 	return (int)(batches < most ? batches : most) * batch;
 }
 
-/* Rows of the design when its intervals are looked at for the first, second, ... time; 0 when max_runs does not allow the
- * first.
+/* Rows of the design at a look.
  *
  * Given    study     -         -       a sensitivity study
  *          look      -         -       0, 1, ...
- * Returns  value     -         rows    those of the last look again when max_runs allows no more; of a design that does
- *                                      not grow always all
+ * Returns  value     -         rows    constant from the look on where max_runs allows no more; 0: max_runs does not
+ *                                      allow the first look; a design that does not grow: all rows
  *
- * Batches: from 10, or as many as hold the study's rows, 2 at a time.  Nets: from 16 points, or as many, twice as many at
- * a time.
+ * Latin hypercubes: BATCHES_FIRST batches, or enough for the rows of the study, then BATCHES_NEXT more at each look.  Sobol'
+ * sequences: POINTS_FIRST points of each, doubled until the rows of the study are reached, then doubled at each look.
  *
  * Test     unit_growth: a_design_grows_by_whole_batches_and_by_doubling
  */
@@ -233,23 +232,23 @@ int pound_design_rows(const struct pound_study *study, int look)
 	return designs[design->method].nets ? net_rows(study, allowed, look) : batch_rows(study, allowed, look);
 }
 
-/* Rows that a design that grows begins with at least. */
+/* Fewest rows that a growing design has at its first look. */
 int pound_design_rows_least(const struct pound_study *study)
 {
 	bool nets = designs[study->design.method].nets;
 	return nets ? POINTS_FIRST * pound_design_grouping(study).n : BATCHES_FIRST * BATCH_LEAST;
 }
 
-/* Rows of the design at its last look. */
+/* Rows of the design at its last look, if it is not stopped before. */
 int pound_design_rows_most(const struct pound_study *study)
 {
 	return pound_design_rows(study, POUND_ROWS_MAX);
 }
 
-/* The probabilities that a study's two matrices are made of.
+/* The probabilities of a study's two matrices.
  *
  * Given    study         -                        inputs and design
- *          stop          -                        looked at throughout: when it is set they are not to be used; NULL: never
+ *          stop          -                        checked throughout: if set, u must not be used; NULL: never
  * Returns  u             (rows x 2 x n_inputs)    in (0, 1); row i of A, then row i of B
  *
  * Test     unit_design
@@ -265,7 +264,8 @@ void pound_design_probabilities(const struct pound_study *study, const atomic_bo
 /* The input values of a study's two matrices.
  *
  * Given    study         -                        -            inputs and design
- *          u             (rows x 2 x n_inputs)    -            their probabilities
+ *          u             (rows x 2 x n_inputs)    -            probabilities
+ *          stop          -                        -            checked throughout: if set, x must not be used; NULL: never
  * Returns  x             (rows x 2 x n_inputs)    the inputs'  row i of A, then row i of B
  *
  * Test     unit_design: values_are_quantiles_of_the_inputs_distributions

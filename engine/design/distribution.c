@@ -1,7 +1,7 @@
-/* distribution.c - the distributions an input may follow, by name, each through its quantile function; of a discrete one
- * it is a staircase.
+/* distribution.c - the distributions of inputs by name, each defined by its quantile function; of a discrete distribution
+ * this is a step function.
  *
- * A quantile takes u in [0, 1]; u = 0 and u = 1 give the ends of the support, exactly where they are parameters. */
+ * A quantile takes u in [0, 1]; u = 0 and u = 1 give the ends of the support, exactly if these are parameters. */
 #include "engine/pound.h"
 
 #include <assert.h>
@@ -13,7 +13,7 @@
 
 enum { RULES_MAX = 3 };
 
-/* What parameters must be to make a distribution.  One that is not a number breaks no rule. */
+/* A condition on the parameters of a distribution.  A parameter that is NAN breaks no rule. */
 struct rule {
 	const char *text;
 	bool (*broken)(const struct pound_distribution *d);
@@ -21,11 +21,11 @@ struct rule {
 
 struct distribution {
 	const char *name;
-	const char *parameters[5]; /* up to the first NULL */
+	const char *parameters[5]; /* names, up to the first NULL */
 	struct rule rules[RULES_MAX + 1];
 	double (*quantile)(const double *p, double u);
 	double (*listed)(const struct pound_distribution *d,
-	                 double u); /* instead, of one that lists its values */
+	                 double u); /* in place of `quantile`, if the study lists the values */
 };
 
 static double within(double x, double low, double high)
@@ -33,7 +33,7 @@ static double within(double x, double low, double high)
 	return x < low ? low : x > high ? high : x;
 }
 
-// of parameters 0 and 1, or 2 and 3, or 0 and 2
+// whether a lower limit is not below the upper one: parameters 0 and 1, 2 and 3, or 0 and 2
 static bool no_range(const struct pound_distribution *d)
 {
 	return d->p[0] >= d->p[1];
@@ -69,7 +69,7 @@ static bool max_not_over_one(const struct pound_distribution *d)
 	return d->p[0] <= 1.0;
 }
 
-/* Quantile of a ratio that is as likely as its inverse, and uniform above 1.
+/* Quantile of a ratio that has the same distribution as its inverse and is uniform above 1.
  *
  * Given    p         (1)       -       max, the largest ratio M  > 1
  *          u         -         -       probability [0, 1]
@@ -103,18 +103,18 @@ static bool too_far_out(const struct pound_distribution *d)
 		return false;
 	double kept = a < 0.0 ? gsl_cdf_ugaussian_P(b) - gsl_cdf_ugaussian_P(a)
 	                      : gsl_cdf_ugaussian_Q(a) - gsl_cdf_ugaussian_Q(b);
-	// below this the tail has lost its digits
+	// a smaller probability has too few digits in double precision
 	return kept <= DBL_MIN / DBL_EPSILON;
 }
 
-/* Quantile of a normal variable known to lie between two bounds.
+/* Quantile of a normal variable truncated to [min, max].
  *
  * Given    p         (4)       -       mean, standard deviation, min, max
  *          u         -         -       probability [0, 1]
  * Returns  value     x         -       [min, max]
  *
- * With a, b the standardised bounds, P(z) = (1-u) P(a) + u P(b) and likewise for Q = 1 - P: the smaller of the
- * two keeps its digits, so that both tails are as good as the middle.
+ * With a, b the standardized bounds, P(z) = (1-u) P(a) + u P(b) and likewise for Q = 1 - P.  The smaller of P and Q is
+ * inverted: it keeps its digits, so both tails are as accurate as the middle.
  *
  * Test     unit_distribution: every_quantile_inverts_its_distribution_function
  */
@@ -149,7 +149,7 @@ static double normal_cov(const double *p, double u)
 	return normal((const double[]){p[0], fabs(p[0]) * p[1]}, u);
 }
 
-/* Quantile of a lognormal variable of a given mean and coefficient of variation.
+/* Quantile of a lognormal variable with a given mean and coefficient of variation V.
  *
  *   s^2 = log(1 + V^2),  log-mean log(mean) - s^2 / 2
  *
@@ -166,7 +166,7 @@ static double lognormal_median(const double *p, double u)
 	return p[0] * exp(p[1] * gsl_cdf_ugaussian_Pinv(u));
 }
 
-/* Largest of many: P(x) = exp(-exp(-(x - location) / scale)). */
+/* Gumbel distribution of largest values: P(x) = exp(-exp(-(x - location) / scale)). */
 static double gumbel(const double *p, double u)
 {
 	return p[0] - p[1] * log(-log(u));
@@ -190,7 +190,7 @@ static double triangular(const double *p, double u)
 	return u < c ? p[0] + width * sqrt(u * c) : p[2] - width * sqrt((1.0 - u) * (1.0 - c));
 }
 
-enum { BETA_MAX = 10000 }; // largest exponent for which GSL's continued fraction surely converges
+enum { BETA_MAX = 10000 }; // largest exponent for which GSL's continued fraction always converges
 
 static bool alpha_outside(const struct pound_distribution *d)
 {
@@ -202,24 +202,24 @@ static bool beta_outside(const struct pound_distribution *d)
 	return d->p[1] <= 0.0 || d->p[1] > BETA_MAX;
 }
 
-/* A distribution of x > 0 with two parameters: P, Q = 1 - P, and the density. */
+/* A distribution on (0, most) with two parameters: P, Q = 1 - P, and the density. */
 struct standard {
 	double (*below)(double x, double a, double b), (*above)(double x, double a, double b),
 	    (*density)(double x, double a, double b);
-	double a, b, most; /* most: x is at most this */
+	double a, b, most;
 };
 
 /* Quantile of a standard distribution.
  *
- * Given    start     -         -       where to begin
+ * Given    start     -         -       first x of the iteration
  *          p, q      -         -       probability (0, 1) and its complement
  * Returns  value     x         -       (0, most)
  *
- * Newton on log P (or log Q, the smaller) against log x, where P is nearly straight (P ~ x^a), kept inside a
- * shrinking bracket.  GSL's own inverses call the error handler when their iterations do not converge; this
- * one always ends.
+ * Newton's method for log P, or log Q if that is smaller, as a function of log x, which is nearly linear for small x
+ * (P ~ x^a); a bracket limits the steps.  GSL's inverses call the error handler if their iterations do not converge; this one
+ * always ends.
  *
- * Valid    full relative accuracy for x <= 1/2 of a beta distribution; ask for 1 - x by (b, a, q, p) above
+ * Valid    beta: full relative accuracy for x <= 1/2; for larger x compute 1 - x with (b, a, q, p)
  * Test     unit_distribution: beta_quantiles_end_for_any_allowed_exponents, gamma_quantiles_end_for_any_allowed_shape
  */
 static double inverse(const struct standard *s, double start, double p, double q)
@@ -242,7 +242,7 @@ static double inverse(const struct standard *s, double start, double p, double q
 	return x;
 }
 
-/* Quantile of the standard beta distribution of exponents a and b. */
+/* Quantile of the standard beta distribution with exponents a and b. */
 static double beta_standard(double a, double b, double p, double q)
 {
 	const struct standard s = {gsl_cdf_beta_P, gsl_cdf_beta_Q, gsl_ran_beta_pdf, a, b, 1.0};
@@ -250,7 +250,7 @@ static double beta_standard(double a, double b, double p, double q)
 }
 
 enum { SHAPE_MAX = 10000 };
-static const double SHAPE_MIN = 0.1; // below, quantiles near 0 are too small for a double
+static const double SHAPE_MIN = 0.1; // with a smaller shape, quantiles near u = 0 underflow
 
 static bool shape_outside(const struct pound_distribution *d)
 {
@@ -259,7 +259,8 @@ static bool shape_outside(const struct pound_distribution *d)
 
 /* Quantile of a gamma distribution of shape a.
  *
- * Q(most) = 0 in doubles: Q(a, x) < exp(-(x - a)^2 / (2 x)) for x > a, below 5e-324 from a + sqrt(2 c (a + c)) + c on, c = 745
+ * The bracket ends at a + sqrt(2 c (a + c)) + c, c = 745: from there on Q(a, x) < exp(-(x - a)^2 / (2 x)) < 5e-324, which is 0
+ * in double precision.
  */
 static double gamma_quantile(const double *p, double u)
 {
@@ -295,7 +296,7 @@ static double weight_of(const struct pound_distribution *d, int n)
 	return sum;
 }
 
-/* The number of a discrete variable's value that it has or falls below with a given probability.
+/* Index of the value of a discrete variable at a probability.
  *
  * Returns  value     k         -       the smallest with w_0 + ... + w_k >= u (w_0 + ... + w_(n-1))
  *
@@ -337,9 +338,9 @@ static bool has_weights(const struct pound_distribution *d)
 	return d->weights;
 }
 
-/* Quantile of a sample: linear between its values, the first for u = 0 and the last for u = 1.
+/* Quantile of a sample: linear between its values, the first one for u = 0 and the last one for u = 1.
  *
- * Source   type 7 of Hyndman and Fan 1996, Am. Stat. 50, 361, as R, NumPy and GSL have it
+ * Source   type 7 of Hyndman and Fan 1996, Am. Stat. 50, 361; the default of R and NumPy, and GSL's
  * Test     unit_distribution: an_empirical_quantile_is_linear_between_the_values
  */
 static double empirical(const struct pound_distribution *d, double u)
@@ -347,7 +348,7 @@ static double empirical(const struct pound_distribution *d, double u)
 	return gsl_stats_quantile_from_sorted_data(d->values, 1, (size_t)d->n_values, u);
 }
 
-/* Probability of the values of a discrete variable before number k. */
+/* Probability that a discrete variable has a value before number k. */
 double pound_distribution_below(const struct pound_distribution *distribution, int k)
 {
 	return weight_of(distribution, k) / weight_of(distribution, distribution->n_values);
@@ -405,7 +406,7 @@ const char *pound_distribution_parameter(int row, int k)
 	return distributions[row].parameters[k];
 }
 
-/* Whether a distribution is given by a list of values, not by numbers. */
+/* Whether a distribution is given by a list of values, not by parameters. */
 bool pound_distribution_lists_values(int row)
 {
 	return distributions[row].listed;
@@ -428,11 +429,11 @@ bool pound_distribution_breaks(const struct pound_distribution *distribution, in
 	return distributions[distribution->type].rules[k].broken(distribution);
 }
 
-/* Value that a variable of a distribution falls below with a given probability.
+/* Quantile of a distribution.
  *
- * Given    distribution  -     -       without fault
- *          u             -     -       probability [0, 1]
- * Returns  value         -     the input's   the ends of the support for u = 0 and u = 1 (infinite for a normal)
+ * Given    distribution  -     -             breaks no rule
+ *          u             -     -             probability [0, 1]
+ * Returns  value         -     the input's   u = 0 and u = 1: the ends of the support (infinite for a normal)
  *
  * Test     unit_distribution: every_quantile_inverts_its_distribution_function
  */

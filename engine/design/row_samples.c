@@ -1,4 +1,4 @@
-/* row_samples.c - the samples of a row by the columns that are from B. */
+/* row_samples.c - the samples of a row, each by the set of columns that it takes from B. */
 #include "engine/design/row_samples.h"
 
 #include <assert.h>
@@ -16,7 +16,7 @@ static int total(int n_inputs)
 	return n_inputs + 2;
 }
 
-// with two inputs B with a column from A is A with the other from B, with one it is A
+// two inputs: B with one column from A is A with the other column from B; one input: B with its column from A is A
 static int second(int n_inputs)
 {
 	return n_inputs > 2 ? 2 * n_inputs + 2 : n_inputs + 2;
@@ -49,14 +49,14 @@ int pound_order_samples(int order, int n_inputs)
 	return orders[order].samples(n_inputs);
 }
 
-/* Whether a mixture comes after the mixtures that take one column from one matrix. */
+/* Whether a mixture takes at least two columns from each matrix; these come last, in ascending order of their masks. */
 static bool is_other(int n_inputs, unsigned mask)
 {
 	int from_b = __builtin_popcount(mask);
 	return from_b > 1 && from_b < n_inputs - 1;
 }
 
-/* The columns that a sample has from B.
+/* The columns that a sample takes from B.
  *
  * Given    sample   -     from 0
  * Returns  value    -     bit j: column j
@@ -78,7 +78,7 @@ unsigned pound_order_mask(int n_inputs, int sample)
 	return mask;
 }
 
-/* The first sample that has these columns from B.
+/* The first sample that takes these columns from B.
  *
  * Test     unit_row_samples: every_mixture_is_there_once_and_in_the_order_of_the_samples
  */

@@ -1,10 +1,10 @@
-/* sobol_sequence.c - Sobol' points, scrambled at random.
+/* sobol_sequence.c - randomly scrambled Sobol' points.
  *
  * 1. A column has 32 direction numbers; point i is the exclusive or of the direction numbers of the set bits of i.
- * 2. A scramble adds to every digit of a point a random choice of the digits before it, and a random digit.
+ * 2. A scramble adds to every binary digit of a point (modulo 2) a random subset of the digits before it and a random digit.
  *
- * So a point needs no other one.  In base 2 the first 2^m points are spread as evenly as the columns allow, and so is
- * each next 2^m; a scramble keeps that, while each point by itself becomes uniform.
+ * A point is computed without the points before it.  Each block of 2^m points, from a multiple of 2^m on, is a (t, m, s)-net
+ * in base 2; a scramble keeps this property, and makes every single point uniformly distributed.
  *
  * Sobol' 1967, USSR Comput. Math. Math. Phys. 7(4), 86-112.  Scramble: Matousek 1998, J. Complexity 14, 527-556. */
 #include "engine/design/sobol_sequence.h"
@@ -12,7 +12,7 @@
 enum { DEGREE_MAX = 9 };
 
 /* Primitive polynomials x^s + a_1 x^(s-1) + ... + 1 over the field of two elements, with a = a_1 .. a_(s-1) in binary, and
- * the first s direction numbers m_k < 2^k, odd.  The column before the first is the van der Corput sequence.
+ * the first s direction numbers m_k < 2^k, odd.  Row k is for column k + 1; column 0 is the van der Corput sequence.
  *
  * Source   Joe, Kuo 2008, SIAM J. Sci. Comput. 30, 2635-2654: their table "new-joe-kuo-6", dimensions 2 to 64
  * Test     unit_sobol_sequence: polynomials_are_primitive_and_each_is_used_once */
@@ -45,10 +45,10 @@ static const struct polynomial {
 };
 // clang-format on
 
-/* Direction numbers of a column, not scrambled.
+/* Direction numbers of a column, without scrambling.
  *
  * Given    column   -      -      [0, POUND_SEQUENCE_COLUMNS)
- * Returns  net      -      -      v_k = m_k / 2^k as digits, the first one highest; no shift
+ * Returns  net      -      -      v_k = m_k / 2^k as 32 binary digits, the first one in the highest bit; no shift
  *
  *   v_k = a_1 v_(k-1) + ... + a_(s-1) v_(k-s+1) + v_(k-s) + v_(k-s) / 2^s        (sums without carry)
  *
@@ -76,11 +76,11 @@ void pound_sequence_init(struct pound_sequence *net, int column)
 
 /* Scrambles a column.
  *
- * Given    stream   -      -      another one gives an independent scramble
- * Returns  net      -      -      digit k: itself, plus a random choice of the digits before it, plus a random digit
+ * Given    stream   -      -      another stream gives an independent scramble
+ * Returns  net      -      -      digit k plus a random subset of the digits before it plus a random digit, modulo 2
  *
  * Source   Matousek 1998, J. Complexity 14, 527-556: random linear scrambling with a digital shift; the mean of a function
- *          over the points has the variance that nested uniform scrambling (Owen 1995) gives it
+ *          over the points has the same variance as with nested uniform scrambling (Owen 1995)
  * Test     unit_sobol_sequence: a_scramble_keeps_elementary_intervals
  */
 void pound_sequence_scramble(struct pound_sequence *net, struct pound_stream stream)
@@ -88,7 +88,7 @@ void pound_sequence_scramble(struct pound_sequence *net, struct pound_stream str
 	uint32_t digits[POUND_SEQUENCE_DIGITS] = {0};
 	for (int k = 0; k < POUND_SEQUENCE_DIGITS; k++) {
 		const int place = POUND_SEQUENCE_DIGITS - 1 - k;
-		// the digit itself and random ones of those before it
+		// the digit and a random subset of the digits before it
 		const uint32_t random = pound_random_words(stream, (uint32_t)k / 4).v[k % 4];
 		const uint32_t taken = (random & -(UINT32_C(2) << place)) | UINT32_C(1) << place;
 		for (int i = 0; i < POUND_SEQUENCE_DIGITS; i++)
@@ -99,7 +99,7 @@ void pound_sequence_scramble(struct pound_sequence *net, struct pound_stream str
 	net->shift = pound_random_words(stream, POUND_SEQUENCE_DIGITS / 4).v[0];
 }
 
-/* A point of a column: the middle of the interval that its 32 digits name. */
+/* A point of a column: the middle of the interval of length 2^-32 that its digits define. */
 double pound_sequence_point(const struct pound_sequence *net, uint32_t number)
 {
 	uint32_t digits = net->shift;

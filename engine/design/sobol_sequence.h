@@ -1,4 +1,4 @@
-/* sobol_sequence.h - columns of scrambled Sobol' points, each point by its number. */
+/* sobol_sequence.h - columns (dimensions) of scrambled Sobol' sequences; points are computed by their number. */
 #ifndef SOBOL_SEQUENCE_H
 #define SOBOL_SEQUENCE_H
 
@@ -6,13 +6,13 @@
 
 enum {
 	POUND_SEQUENCE_COLUMNS = 64,
-	POUND_SEQUENCE_DIGITS = 32, /* binary digits of a point, and of its number */
+	POUND_SEQUENCE_DIGITS = 32, /* binary digits of a point and of its number */
 };
 
 struct pound_sequence {
 	uint32_t direction
-	    [POUND_SEQUENCE_DIGITS]; /* what bit k of a point's number adds to its digits, first digit highest */
-	uint32_t shift;              /* added to every point */
+	    [POUND_SEQUENCE_DIGITS]; /* [k]: digits that bit k of a point's number adds (exclusive or), highest first */
+	uint32_t shift;              /* added to every point (exclusive or) */
 };
 
 void pound_sequence_init(struct pound_sequence *net, int column);

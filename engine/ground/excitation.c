@@ -1,4 +1,4 @@
-/* The table of excitations.  */
+/* excitation.c - the table of excitations: number of samples and samples of each type. */
 #include "engine/ground/excitation.h"
 
 #include <assert.h>
@@ -14,7 +14,7 @@
 
 static const double PI = 0x1.921fb54442d18p+1;
 
-/* duration over step to the nearest whole number, at least one, and the sample at time 0 */
+/* duration / step, rounded to the nearest integer, at least 1, plus the sample at time 0 */
 static int samples_within(double duration, double step)
 {
 	const double steps = duration / step;
@@ -44,13 +44,13 @@ static int suite_samples(const struct pound_excitation *e)
 	return most;
 }
 
-/* Largest |a|, n >= 1. */
+/* Largest |a|.  (n) */
 double pound_excitation_largest(int n, const double *a)
 {
 	return ground_largest(n, a);
 }
 
-/* The ground motion that noise is made to. */
+/* The noise of a signal; filter NULL: white. */
 static struct pound_noise noise_of(const struct pound_signal *signal, const struct pound_filter *filter,
                                    int n)
 {
@@ -68,7 +68,7 @@ static void kanai_tajimi(const struct pound_signal *signals, int n)
 {
 	struct pound_noise made[POUND_SIGNALS_MAX];
 	struct pound_filter filters[POUND_SIGNALS_MAX], *filter = filters - 1;
-	double of[3] = {-1, -1, -1}; /* what the filter is made of: signals of a row of the design share it */
+	double of[3] = {-1, -1, -1}; /* parameters of the last filter: signals of one design row share it */
 	for (int j = 0; j < n; j++) {
 		const struct pound_excitation *e = signals[j].excitation;
 		const double asked[3] = {2 * PI * e->frequency_hz * e->time_step, e->damping_ratio,
@@ -77,7 +77,7 @@ static void kanai_tajimi(const struct pound_signal *signals, int n)
 			memcpy(of, asked, sizeof of);
 			pound_filter_init(++filter, of[0], of[1], of[2]);
 		}
-		// by their length, so that those side by side end together
+		// sorted by length, so that signals in adjacent lanes end together
 		const int samples = cycles_samples(e);
 		int at = j;
 		for (; at > 0 && made[at - 1].n > samples; at--)
@@ -116,11 +116,11 @@ static void record(const struct pound_signal *signal, int one)
 static const struct {
 	const char *name;
 	const char *text; /* one line of documentation */
-	bool tuned;       /* has a frequency of its own */
-	bool random;      /* one signal differs from the next */
-	int at_once;      /* signals that are made together */
+	bool tuned;       /* reads frequency_hz */
+	bool random;      /* each signal is another realization */
+	int at_once;      /* most signals of one call of fill */
 	int (*samples)(const struct pound_excitation *e);
-	void (*fill)(const struct pound_signal *signals, int n); /* NULL: its signals are of another row */
+	void (*fill)(const struct pound_signal *signals, int n); /* NULL: the signals have the type record */
 } excitations[] = {
     {"kanai_tajimi", "white noise through the Kanai-Tajimi filter and a high pass, a trapezoid in time", true,
      true, POUND_SIGNALS_MAX, cycles_samples, kanai_tajimi},
@@ -145,8 +145,7 @@ const char *pound_excitation_name(int row)
 
 /* Number of samples of an excitation.
  *
- * Returns  value   n     from the first to the last is the duration rounded to whole steps, at least one; of a suite those
- *                        of its longest record
+ * Returns  value   n     1 + the duration in whole steps, rounded, at least one step; suite: samples of its longest record
  *
  * Valid    duration over step below 2^31 - 2
  * Test     unit_excitation: the_last_sample_is_the_one_nearest_to_the_end */
@@ -158,16 +157,16 @@ int pound_excitation_samples(const struct pound_excitation *e)
 
 /* Samples of the ground acceleration of signals.
  *
- * Given    signals  (n)    whatever their excitations, the best for speed is of one kind and length
+ * Given    signals  (n)    of any excitations but suites; fastest if adjacent signals have the same type and length
  * Returns  signals  a      m/s2
  *
  *   kanai_tajimi   filtered noise, times the trapezoid, scaled to peak      (kanai_tajimi.c)
  *   white_noise    independent normal samples, times the trapezoid, scaled to peak
  *   harmonic       peak * sin 2 pi f t
- *   record         times its factor
+ *   record         samples of the record, times its factor
  *
- * Valid    Noise whose every sample is zero stays zero: two samples both at the feet of a trapezoid.
- *          A signal's bits do not depend on those beside it.
+ * Valid    A signal of two samples may be zero at both, where the trapezoid is zero: it stays zero, without its peak.
+ *          The bits of a signal do not depend on the other signals.
  * Source   model.md 4
  * Test     unit_excitation */
 void pound_signals_fill(const struct pound_signal *signals, int n)
@@ -182,7 +181,7 @@ void pound_signals_fill(const struct pound_signal *signals, int n)
 	}
 }
 
-/* Frequency around which an excitation shakes [Hz], 0 for one that has none of its own.
+/* Frequency of an excitation [Hz]: of the filter or of the sine; 0: the excitation has no frequency parameter.
  *
  * Test     unit_excitation: noise_without_colour_and_records_have_no_frequency */
 double pound_excitation_frequency(const struct pound_excitation *e)
@@ -190,7 +189,7 @@ double pound_excitation_frequency(const struct pound_excitation *e)
 	return excitations[e->type].tuned ? e->frequency_hz : 0;
 }
 
-/* Whether the signals of an excitation are random: the records of a suite are random where they are drawn.
+/* Whether the signals of an excitation are random: noise, and suites whose records are drawn at random.
  *
  * Test     unit_excitation: only_noise_differs_from_signal_to_signal */
 bool pound_excitation_random(const struct pound_excitation *e)

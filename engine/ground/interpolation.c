@@ -1,13 +1,13 @@
-/* interpolation.c - samples between the samples of a record, taken as a band-limited signal. */
+/* interpolation.c - band-limited interpolation of a record to half its time step, by a windowed sinc. */
 #include "engine/ground/excitation.h"
 
 #include <math.h>
 
-enum { SIDE = 32 /* samples on either side of a new one */ };
+enum { SIDE = 32 /* samples used on each side of a new one */ };
 
 static const double PI = 3.14159265358979323846, SHAPE = 10;
 
-/* Modified Bessel function of order 0 by its series, which has only positive terms. */
+/* Modified Bessel function I_0 by its power series; all terms are positive, so nothing cancels. */
 static double bessel(double x)
 {
 	double sum = 1, term = 1;
@@ -18,17 +18,17 @@ static double bessel(double x)
 	return sum;
 }
 
-/* A record at twice its rate.
+/* A record at twice its sampling rate.
  *
  * Given    n       -         -      samples >= 2
- *          a       (n)       m/s2   0 before and after
- * Returns  twice   (2n - 1)  m/s2   a at every second place
+ *          a       (n)       m/s2   taken as 0 before the first and after the last sample
+ * Returns  twice   (2n - 1)  m/s2   a[i] at index 2 i, interpolated samples between
  *
  *   a(i + 1/2) = sum_j h_j (a_(i-j) + a_(i+1+j)),  h_j = w(j + 1/2) (-1)^j / (pi (j + 1/2)),  j < 32
  *
- * with Kaiser's window w(x) = I_0(10 sqrt(1 - (x/32)^2)), scaled so that a constant stays one.
+ * with Kaiser's window w(x) = I_0(10 sqrt(1 - (x/32)^2)), scaled so that a constant is reproduced.
  *
- * Valid    a sine up to 90 % of the Nyquist frequency is met to 2e-5
+ * Valid    error below 2e-5 of the amplitude for a sine up to 90 % of the Nyquist frequency
  * Source   Kaiser 1974, Proc. IEEE Int. Symp. Circuits and Systems, 20
  * Test     unit_excitation: a_sine_is_interpolated_as_a_sine
  */

@@ -1,16 +1,16 @@
-/* White noise through the Kanai-Tajimi filter and the second-order high pass of Clough and Penzien, as a recurrence from
- * sample to sample that takes one normal number a sample and has the autocovariance of the continuous process.
+/* kanai_tajimi.c - white noise through the Kanai-Tajimi filter and the second-order high pass of Clough and Penzien, as an
+ * ARMA(4, 3) recurrence with one normal number per sample and exactly the autocovariance of the continuous process.
  *
  *   1. p'''' + c3 p''' + c2 p'' + c1 p' + c0 p = w   and   a = alpha p''' + beta p''
- *   2. from sample to sample: the transition matrix F = 1 + D, and the covariance Q of what the noise adds meanwhile
- *   3. the spectral density of the samples: |numerator|^2 over |det(z - F)|^2, the numerator a cubic polynomial
- *   4. the same density from one noise: the numerator is the cubic polynomial of that modulus with its zeros in the unit
- *      circle, and both polynomials make a recurrence whose state is another
- *   5. the state before the first sample from the stationary covariance of that state
+ *   2. from sample to sample: the transition matrix F = 1 + D, and the covariance Q of the noise added within a step
+ *   3. spectral density of the samples: a polynomial of degree 3 in |z - 1|^2 over |det(z - F)|^2
+ *   4. spectral factorization: the cubic numerator with all zeros inside the unit circle whose squared modulus is the
+ *      polynomial of 3; numerator and denominator are the coefficients of a recurrence with a new state
+ *   5. the state before the first sample from the stationary covariance of the new state
  *
- * Polynomials are in d = z - 1, and on the unit circle in v = |d|^2: poles and zeros of small steps lie at z = 1, and d
- * keeps their digits.  Time is counted in sample steps and the state is (p''', p'', p', p), so the matrices keep one
- * shape for any step: small steps cost no digits.
+ * Polynomials are in d = z - 1, on the unit circle in v = |d|^2: with small steps poles and zeros are near z = 1, where d
+ * has no cancellation.  Time is in sample steps and the state is (p''', p'', p', p), so the scaling of the matrices is the
+ * same for any step, and small steps lose no digits.
  * Kanai 1957, Bull. Earthq. Res. Inst. 35, 309-325; Tajimi 1960, Proc. 2nd WCEE, 781-798;
  * Clough, Penzien 1975, Dynamics of structures, McGraw-Hill;
  * Anderson, Moore 1979, Optimal filtering, Prentice-Hall, chapter 9: spectral factorization. */
@@ -24,7 +24,7 @@ enum { N = FILTER_STATES, NODES = 8 };
 
 static const double HIGH_PASS_DAMPING = 0.6;
 
-/* p'''' + c[3] p''' + c[2] p'' + c[1] p' + c[0] p = (s^2 + alpha s + beta) (s^2 + gamma s + delta) p */
+/* p'''' + c[3] p''' + c[2] p'' + c[1] p' + c[0] p = (s^2 + alpha s + beta) (s^2 + gamma s + delta) p,  s: d/dt, t in steps */
 struct filter {
 	double alpha, beta;  /* Kanai-Tajimi */
 	double gamma, delta; /* high pass */
@@ -54,12 +54,12 @@ static struct filter filter_of(double theta, double damping_ratio, double high_p
 
 /* (exp(A s) - 1) x, by its power series:  A (x0, x1, x2, x3) = (-c3 x0 - c2 x1 - c1 x2 - c0 x3, x0, x1, x2)
  *
- * Valid    s times the largest pole <= 1: the series ends where a term changes no component */
+ * Valid    s times the largest pole <= 1; the series ends when a term changes no component */
 static void propagate(const double c[N], double s, double x[N])
 {
 	double t0 = x[0], t1 = x[1], t2 = x[2], t3 = x[3];
 	double x0 = 0, x1 = 0, x2 = 0, x3 = 0;
-	// the first N - 1 terms are zero in components the chain has not reached
+	// a component may be zero in the first N - 1 terms
 	for (int n = 1; n < N || x0 + t0 != x0 || x1 + t1 != x1 || x2 + t2 != x2 || x3 + t3 != x3; n++) {
 		const double by = s / n, top = -((c[3] * t0 + c[2] * t1) + (c[1] * t2 + c[0] * t3));
 		t3 = t2 * by;
@@ -74,14 +74,14 @@ static void propagate(const double c[N], double s, double x[N])
 	x[0] = x0, x[1] = x1, x[2] = x2, x[3] = x3;
 }
 
-/* Covariance of what white noise of intensity 1 adds to the state within h.
+/* Covariance that white noise of intensity 1 adds to the state within time h.
  *
  *   Q = integral of v v^T from 0 to h,   v(s) = exp(A s) (1, 0, 0, 0)^T
  *
- * by Gauss-Legendre: the sum of v v^T with positive weights loses no digits, and for h = 1 and slow poles v
- * is nearly (1, s, s^2/2, s^3/6), so Q is a Hilbert matrix with scaled rows, whose pivots come out to 1e-12.
+ * by Gauss-Legendre quadrature: a sum of v v^T with positive weights does not cancel.  For h = 1 and slow poles v is
+ * nearly (1, s, s^2/2, s^3/6), so Q is a Hilbert matrix with scaled rows; its pivots are accurate to 1e-12.
  *
- * Valid    h times the largest pole <= 1: the error is below the rounding
+ * Valid    h times the largest pole <= 1: the quadrature error is below rounding
  * Test     unit_kanai_tajimi, through the variance */
 static void covariance(const double c[N], double h, double q[N][N])
 {
@@ -103,7 +103,7 @@ static void covariance(const double c[N], double h, double q[N][N])
 	}
 }
 
-/* a b; out is neither of them */
+/* out = a b; out must not alias a or b */
 static inline void product(double a[N][N], double b[N][N], double out[N][N])
 {
 #pragma GCC unroll 4
@@ -114,7 +114,7 @@ static inline void product(double a[N][N], double b[N][N], double out[N][N])
 	}
 }
 
-/* a q a^T of a symmetric q; out is neither of them */
+/* out = a q a^T for a symmetric q; out must not alias a or q */
 static inline void congruent(double a[N][N], double q[N][N], double out[N][N])
 {
 	double aq[N][N], transposed[N][N];
@@ -125,7 +125,8 @@ static inline void congruent(double a[N][N], double q[N][N], double out[N][N])
 	product(a, transposed, out);
 }
 
-/* D = F - 1 and covariance over twice the time:  2 D + D D  and  Q + F Q F^T.  D, not F, as a slow pole lies near 1.
+/* D = F - 1 and covariance over twice the time:  2 D + D D  and  Q + F Q F^T.  D, not F, because F of a slow pole is
+ * nearly 1 and would lose the digits of D.
  *
  * Returns  value   whether a variance has grown */
 static bool doubled(double d[N][N], double q[N][N])
@@ -147,13 +148,15 @@ static bool doubled(double d[N][N], double q[N][N])
 	return grows;
 }
 
-/* d^2 - sum d + product: a pair of roots */
+/* sum and product of two roots of d^2 - sum d + product */
 struct pair {
 	double sum, product;
 };
 
-/* The poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0:  the poles of h by the power series of exp(A h) - 1,
- * A (x0, x1) = (-b x0 - c x1, x0),  whose determinant cancels nothing; from there  d -> 2 d + d^2  over twice the time.
+/* The poles d = exp(p) - 1 of a step,  p^2 + b p + c = 0.
+ *
+ * Poles for time h: trace and determinant of exp(A h) - 1 by its power series,  A (x0, x1) = (-b x0 - c x1, x0); the
+ * determinant has no cancellation.  Each doubling of the time:  d -> 2 d + d^2.
  *
  * Valid    h times the largest pole <= 1 */
 static struct pair poles_of(double b, double c, double h, int doublings)
@@ -186,9 +189,9 @@ static void denominator_of(struct pair p, struct pair q, double a[N])
 	a[0] = p.product * q.product;
 }
 
-/* Numerator of the samples' transfer function from what the noise adds:  C adj(d - D),  a polynomial in d = z - 1.
+/* Numerator of the transfer function from the noise added to each state to the samples:  C adj(d - D),  d = z - 1.
  *
- * Returns  numerator  (N x N)   row j: the coefficient of d^j, for each state that noise is added to
+ * Returns  numerator  (N x N)   row j: the coefficients of d^j, one per state
  *
  * Source   adj = sum of M_j d^j,  M_3 = 1,  M_j-1 = M_j D + a_j */
 static void numerator_of(double d[N][N], const double a[N], const double c[N], double numerator[N][N])
@@ -203,7 +206,7 @@ static void numerator_of(double d[N][N], const double a[N], const double c[N], d
 	}
 }
 
-/* |sum of n_j d^j|^2, where the noise adds with covariance q, on the unit circle, as a polynomial in v = |d|^2.
+/* |sum of n_j d^j|^2 on the unit circle for added noise of covariance q, as a polynomial in v = |d|^2.
  *
  *   d + conj d = -v     d^2 + conj d^2 = v^2 - 2 v     d^3 + conj d^3 = 3 v^2 - v^3 */
 static void density_of(double n[N][N], double q[N][N], double density[N])
@@ -216,13 +219,16 @@ static void density_of(double n[N][N], double q[N][N], double density[N])
 	density[3] = g[3][3] - g[2][3] + g[1][3] - g[0][3];
 }
 
-/* A real root of q[0] + q[1] v + q[2] v^2 + q[3] v^3, which is positive from 0 to 4: one below 0 or above 4, to all its
- * digits, by Newton's steps in a bracket that is halved, in exponents first, where these fail.
+/* A real root of q[0] + q[1] v + q[2] v^2 + q[3] v^3, a cubic that is positive for v in [0, 4].
+ *
+ * Returns  value   the root below 0 if q[3] > 0, else above 4; to rounding
+ *
+ * Newton's method within a bracket; if a Newton step fails, bisection, geometric as long as the bracket is wide.
  *
  * Source   the bracket: Cauchy's bounds of the roots */
 static double root_of(const double q[N])
 {
-	const double sign = q[3] > 0 ? -1 : 1; // q(sign u) falls through 0
+	const double sign = q[3] > 0 ? -1 : 1; // q(sign u) is positive below the root, negative above it
 	const double c[N] = {q[0], sign * q[1], q[2], sign * q[3]};
 	const double most = fmax(fabs(c[1]), fabs(c[2]));
 	double low = c[0] / (c[0] + fmax(most, fabs(c[3]))), high = 1 + fmax(most, c[0]) / fabs(c[3]);
@@ -244,17 +250,18 @@ static double root_of(const double q[N])
 	}
 }
 
-/* The zero d of a real v:  d^2 + v d + v = 0,  |1 + d| < 1.  The two d of a v multiply to v: the larger one cancels nothing and
- * gives the other. */
+/* The zero d inside the unit circle of a real v:  d^2 + v d + v = 0,  |1 + d| < 1.
+ *
+ * The product of the two roots is v, so the root without cancellation gives the other one. */
 static double zero_of(double v)
 {
 	return 2 * v / (-v - copysign(sqrt(v * (v - 4)), v));
 }
 
-/* The zeros of the pair v = a + i b and a - i b */
+/* Sum and product of the zeros inside the unit circle of the complex pair v = a + i b, a - i b. */
 static struct pair zeros_of(double a, double b)
 {
-	// s = sqrt(v (v - 4)), on the side of -v
+	// s = sqrt(v (v - 4)), the root in the direction of -v, so that s - v does not cancel
 	const double x = (a - b) * (a + b) - 4 * a, y = 2 * b * (a - 2), size = sqrt(x * x + y * y);
 	double re = sqrt(0.5 * (size + fabs(x))), im = re > 0 ? 0.5 * y / re : 0;
 	if (x < 0) {
@@ -267,10 +274,12 @@ static struct pair zeros_of(double a, double b)
 	return (struct pair){2 * (a * p + b * q) / r, (a * a + b * b) / r};
 }
 
-/* The cubic polynomial in d whose modulus on the unit circle is the density and whose zeros lie in it.
+/* Spectral factor: the cubic polynomial in d whose squared modulus on the unit circle is the density and whose zeros lie
+ * inside the circle.
  *
- * Valid    a density that is positive from v = 0 to 4.  A leading coefficient below 1e-30 of the density at v = 4 is as good
- *          as 0, a zero at d = -1, and a density at v = 0 below 1e-200 of it is two zeros at d = 0. */
+ * Valid    a density that is positive for v in (0, 4].  A leading coefficient below 1e-30 of the density at v = 4 is set to
+ *          that, which gives a zero at d = -1; a density at v = 0 below 1e-200 of it is set to that, which gives two zeros
+ *          at d = 0. */
 static void factor_of(const double density[N], double b[N])
 {
 	double q[N] = {density[0], density[1], density[2], density[3]};
@@ -279,13 +288,13 @@ static void factor_of(const double density[N], double b[N])
 	if (fabs(q[3]) < 1e-30 * nyquist)
 		q[3] = 1e-30 * nyquist;
 	const double v = root_of(q);
-	// the other two: q3 v^2 + e1 v + e0, e1 from the side that cancels less
+	// the other two roots: q3 v^2 + e1 v + e0; e1 by the formula with less cancellation
 	const double e0 = -q[0] / v;
 	const double e1 =
 	    fabs(q[2]) + fabs(q[3] * v) < (fabs(e0) + fabs(q[1])) / fabs(v) ? q[2] + q[3] * v : (e0 - q[1]) / v;
 	const double half = -0.5 * e1 / q[3], discriminant = half * half - e0 / q[3];
 	const double far = half + copysign(sqrt(fmax(discriminant, 0)), half), near = e0 / q[3] / far;
-	// two roots that are nearly one can lie where the density is positive by rounding alone
+	// by rounding errors, two nearly equal roots may fall into (0, 4), where the density is positive
 	const struct pair zeros = discriminant < 0 || (far > 0 && far < 4)
 	                              ? zeros_of(half, sqrt(fmax(-discriminant, 0)))
 	                              : (struct pair){zero_of(far) + zero_of(near), zero_of(far) * zero_of(near)};
@@ -298,7 +307,7 @@ static void factor_of(const double density[N], double b[N])
 	b[0] = -gain * zeros.product * d;
 }
 
-/* Factor of a covariance, l l^T = q, l lower triangular; what is left of a variance below its rounding is none. */
+/* Cholesky factor of a covariance, l l^T = q; a remaining variance below rounding counts as 0. */
 static void cholesky(double q[N][N], double l[N][N])
 {
 	for (int j = 0; j < N; j++) {
@@ -317,8 +326,8 @@ static void cholesky(double q[N][N], double l[N][N])
 	}
 }
 
-/* Factor of the stationary covariance of the state: the sum of F^k b b^T F^kT, F = 1 + D of struct pound_filter, over twice
- * as many terms each time until no variance grows. */
+/* Cholesky factor of the stationary covariance of the state: the sum of F^k b b^T F^kT, with the F = 1 + D of struct
+ * pound_filter; each round doubles the number of terms, until no variance grows. */
 static void stationary(const double a[N], const double b[N], double l[N][N])
 {
 	double d[N][N], p[N][N];
@@ -338,20 +347,20 @@ static void stationary(const double a[N], const double b[N], double l[N][N])
  *
  * Given    theta               -    2 pi filter frequency * sample step, > 0
  *          damping_ratio       -    of the filter, > 0
- *          high_pass_ratio     -    corner of the high pass over the filter frequency, > 0
+ *          high_pass_ratio     -    corner frequency of the high pass over the filter frequency, > 0
  * Returns  f                        for white noise of intensity 1 per sample step: two-sided density 1 / 2 pi
  *
  *   H(s) = (alpha s + beta) / (s^2 + alpha s + beta) * s^2 / (s^2 + gamma s + delta)
  *
- * Valid    ratios beyond 1e-9 and 1e9 and steps beyond 1e-20 and 1e6 are taken as these, so that no power of them
- *          overflows; a step of many periods gives nearly independent samples.  The output's
- *          autocovariance is right to 1e-14 of the variance over the high pass ratio
+ * Valid    ratios outside [1e-9, 1e9] and theta outside [1e-20, 1e6] are set to the nearest limit, so that no power of
+ *          them overflows; a step of many periods gives nearly independent samples.  Error of the autocovariance:
+ *          1e-14 of the variance, divided by the high pass ratio
  * Source   model.md 4: absolute acceleration of the filter's mass, then the high pass
  * Test     unit_kanai_tajimi */
 void pound_filter_init(struct pound_filter *f, double theta, double damping_ratio, double high_pass_ratio)
 {
 	const struct filter k = filter_of(theta, damping_ratio, high_pass_ratio);
-	// a quadratic's roots are no larger than the larger of its natural frequency and its damping coefficient
+	// the roots of a quadratic are at most the larger of its natural frequency and its damping coefficient
 	const double bound[4] = {sqrt(k.beta), k.alpha, sqrt(k.delta), k.gamma};
 	double largest = 0;
 	for (int i = 0; i < 4; i++)

@@ -1,13 +1,13 @@
-/* largest.h - the largest |a| of samples, at the lane width of the file that includes it. */
+/* largest.h - the largest |a| of samples, compiled at the lane width of the including file. */
 #ifndef LARGEST_H
 #define LARGEST_H
 
 #include <math.h>
 
-/* Largest |a|, 0 of none.  (n) */
+/* Largest |a|; n = 0: 0.  (n) */
 static inline double ground_largest(int n, const double *a)
 {
-	// in parts, as each comparison waits for the one before it
+	// PARTS independent maxima: in a single one each comparison waits for the previous one
 	enum { PARTS = 32 };
 	double most[PARTS] = {0};
 	int i = 0;

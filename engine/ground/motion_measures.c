@@ -1,7 +1,7 @@
-/* motion_measures.c - what engineers quote of a ground motion: peaks, Arias intensity, significant duration.
+/* motion_measures.c - intensity measures of a ground motion: peaks, Arias intensity, significant duration.
  *
- * The acceleration is linear between samples, so velocity is a parabola and displacement a cubic in each interval; both start
- * at 0.  Nothing is filtered: a baseline error of the record is in the displacement. */
+ * The acceleration is linear between samples, so in each interval velocity is a quadratic and displacement a cubic; both
+ * start at 0.  There is no baseline correction: a baseline error of the record appears in the displacement. */
 #include <assert.h>
 #include <math.h>
 
@@ -9,9 +9,9 @@
 
 static const double PI = 0x1.921fb54442d18p+1, GRAVITY = 9.80665;
 
-/* the motion in one interval, from its start */
+/* motion in one interval; values at its start */
 struct interval {
-	double h;        /* [s] */
+	double h;        /* length [s] */
 	double a, slope; /* [m/s2], [m/s3] */
 	double v, u;     /* [m/s], [m] */
 };
@@ -26,7 +26,7 @@ static double displacement(const struct interval *i, double t)
 	return i->u + t * (i->v + t * (0.5 * i->a + i->slope * t / 6));
 }
 
-/* Integral of a^2 to time t; the terms of ((a + s t)^3 - a^3)/(3 s), written without the division. */
+/* Integral of a^2 from 0 to t: ((a + s t)^3 - a^3)/(3 s), multiplied out to avoid the division by a zero slope s. */
 static double squared(const struct interval *i, double t)
 {
 	const double s = i->slope * t;
@@ -39,7 +39,7 @@ static void raise(double *most, double value)
 		*most = fabs(value);
 }
 
-/* Peaks inside an interval: of the velocity where the acceleration is 0, of the displacement where the velocity is. */
+/* Peaks inside an interval: velocity at zeros of the acceleration, displacement at zeros of the velocity. */
 static void interval_peaks(const struct interval *i, struct pound_motion_measures *m)
 {
 	const double root = -i->a / i->slope;
@@ -48,7 +48,7 @@ static void interval_peaks(const struct interval *i, struct pound_motion_measure
 	const double square = i->a * i->a - 2 * i->slope * i->v;
 	if (square < 0)
 		return;
-	// the root of the larger magnitude first, the other from their product: no difference of like numbers
+	// the root without cancellation first, the other one from the product of the roots
 	const double sum = -(i->a + copysign(sqrt(square), i->a));
 	const double roots[2] = {sum / i->slope, 2 * i->v / sum};
 	for (int k = 0; k < 2; k++)
@@ -56,7 +56,7 @@ static void interval_peaks(const struct interval *i, struct pound_motion_measure
 			raise(&m->pgd, displacement(i, roots[k]));
 }
 
-/* The time in an interval at which the integral of a^2 has a value that it reaches there, by bisection to rounding. */
+/* The time in an interval at which the integral of a^2 reaches a value, by bisection to rounding. */
 static double time_of(const struct interval *i, double value)
 {
 	double low = 0, high = i->h;
@@ -65,14 +65,14 @@ static double time_of(const struct interval *i, double value)
 	return high;
 }
 
-/* The next interval, of samples `a` and `b`. */
+/* Moves to the next interval, between samples `a` and `b`. */
 static void advance(struct interval *i, double a, double b, double h)
 {
 	const double v = velocity(i, i->h), u = displacement(i, i->h);
 	*i = (struct interval){.h = h, .a = a, .slope = (b - a) / h, .v = v, .u = u};
 }
 
-/* Times at which the integral of a^2 reaches two fractions of its end. */
+/* Time between 5 % and 95 % of the integral of a^2 [s]. */
 static double duration_between(int n, const double *a, double step, double total)
 {
 	double times[2] = {0}, sum = 0;
@@ -91,12 +91,12 @@ static double duration_between(int n, const double *a, double step, double total
  *
  * Given    a      (n)   m/s2   at times 0, step, ..., linear in between  (n >= 2)
  *          step         s      > 0
- * Returns  measures            0 for a motion that is 0
+ * Returns  measures            all 0 for a motion that is 0
  *
  *   v(t) = int_0^t a,  u(t) = int_0^t v,  Arias = pi/(2 g) int a^2 dt,  g = 9.80665 m/s2
- *   duration: between the times at which int a^2 has reached 5 % and 95 % of its end
+ *   duration: between the times at which int a^2 reaches 5 % and 95 % of its final value
  *
- * Valid    Exact for the motion between its samples, to the rounding of n sums.
+ * Valid    Exact for the piecewise linear acceleration, to the rounding errors of sums of n terms.
  * Source   Arias 1970; Trifunac & Brady 1975 (5-95 %)
  * Test     unit_motion_measures: measures_of_motions_with_a_closed_form
  */

@@ -1,4 +1,4 @@
-/* noise.c - noise at the widest lanes of this machine. */
+/* noise.c - noise, by the compilation of noise.inl for a lane width. */
 #include "engine/ground/noise.h"
 #include "engine/numeric/cpu_width.h"
 

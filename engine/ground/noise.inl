@@ -1,7 +1,7 @@
-/* noise.inl - ground motions of noise, many filtered signals side by side in lanes.
+/* noise.inl - random ground motions; filtered signals are computed in lanes, one signal per lane.
  *
- * From sample to sample a filter waits for its own result: one signal alone takes four times as long as its operations.
- * A signal's bits do not depend on its lane or its neighbours. */
+ * Each sample of a filter depends on the previous one: computed alone, a signal takes four times as long as its operations
+ * need, because of latency.  The bits of a signal do not depend on its lane or on the other lanes. */
 #include <assert.h>
 #include <math.h>
 #include <stdbool.h>
@@ -16,7 +16,7 @@ enum { N = FILTER_STATES, NUMBERS = NOISE_WORDS * NOISE_CHUNK };
 
 static_assert((int)N <= (int)ROW, "the state before the first sample comes from one row of numbers");
 
-/* the filters of the lanes: struct pound_filter, in vectors */
+/* the filters of all lanes: struct pound_filter with a vector for each double */
 struct filters {
 	vd pole[N], zero[N], start[N][N];
 };
@@ -24,7 +24,7 @@ struct filters {
 static_assert(sizeof(struct filters) == W * sizeof(struct pound_filter),
               "a filter is doubles and nothing else");
 
-/* One sample of every lane; kanai_tajimi.h has the recurrence. */
+/* The next sample of every lane, by the recurrence of kanai_tajimi.h. */
 LANE_INLINE vd sample_next(const struct filters *f, vd z, vd x[N])
 {
 	const vd old = x[0];
@@ -34,14 +34,14 @@ LANE_INLINE vd sample_next(const struct filters *f, vd z, vd x[N])
 	return x[0];
 }
 
-/* The part of a row of samples that a signal has, from its sample `at` on. */
+/* Copies a row of samples to a signal from sample `at` on, without samples before its first or after its last one. */
 LANE_INLINE void row_part(const struct pound_noise *signal, int at, const double row[ROW])
 {
 	for (int j = at < 0 ? -at : 0; j < ROW && at + j < signal->n; j++)
 		signal->a[at + j] = row[j];
 }
 
-/* Up to W filtered signals, as far as the longest goes. */
+/* Up to W filtered signals, up to the end of the longest. */
 static void filtered_run(const struct pound_noise *signals, int n_signals)
 {
 	struct filters f;
@@ -63,7 +63,7 @@ static void filtered_run(const struct pound_noise *signals, int n_signals)
 		from[l] = z[l][0];
 	memset(z, 0, sizeof z);
 	vd x[N] = {vsplat(0), vsplat(0), vsplat(0), vsplat(0)};
-	// number k of the chunks' numbers, in the order they lie in, makes sample k - N; the first N make the state before
+	// normal number k, counted through all chunks in memory order, drives sample k - N; the first N give the initial state
 	for (int first = 0; first < longest + N; first += NUMBERS) {
 		for (int l = 0; l < n_signals; l++)
 			if (first < signals[l].n + N)
@@ -102,7 +102,7 @@ static void white_run(const struct pound_noise *signal)
 	}
 }
 
-/* a[i] times a trapezoid: up from 0 over the first `rise` of the time, down to 0 over the last `fall` */
+/* Multiplies by a trapezoid: up from 0 in the first fraction `rise` of the duration, down to 0 in the last fraction `fall`. */
 static void shape(double rise, double fall, int n, double *a)
 {
 	const double up = rise * (n - 1), down = fall * (n - 1);
@@ -114,7 +114,7 @@ static void shape(double rise, double fall, int n, double *a)
 		a[n - 1 - i] *= i * downward;
 }
 
-/* a times what makes its largest |a| the peak; dividing first, nothing in between is too large or too small */
+/* Scales the largest |a| to the peak; the division comes first, so that nothing overflows or underflows. */
 static void scale(double peak, int n, double *a)
 {
 	const double largest = ground_largest(n, a);
@@ -123,10 +123,10 @@ static void scale(double peak, int n, double *a)
 			a[i] = a[i] / largest * peak;
 }
 
-/* Ground motions of noise.
+/* Random ground motions.
  *
- * Given    signals  (n)  filtered ones of about one length, or lanes wait for the longest
- * Returns  signals  a
+ * Given    signals  (n)   fastest if adjacent filtered signals have about the same length
+ * Returns  signals  a     m/s2
  *
  * Test     unit_kanai_tajimi, unit_excitation
  */

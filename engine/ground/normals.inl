@@ -1,10 +1,10 @@
-/* Standard normal numbers from Philox words.
+/* normals.inl - standard normal numbers from Philox words.
  *
  *   1. the ten rounds of Philox4x32 over the counters of a chunk of draws
- *   2. Box-Muller: of each two words one gives the radius, the other the angle
+ *   2. Box-Muller: of each pair of words the first gives the radius, the second the angle
  *
- * Every loop runs over a chunk of fixed length, so that compilers make vector instructions of it, but for the product
- * of two words of 32 bits, which they do not recognise; no result depends on how wide the vectors are.
+ * Every loop over a chunk has a fixed length, so that compilers vectorize it; only the product of two 32-bit words needs
+ * an intrinsic (vproduct), as compilers do not vectorize it.  No result depends on the vector width.
  * Box, Muller 1958, Ann. Math. Stat. 29, 610-611. */
 #include "engine/ground/normals.h"
 
@@ -14,11 +14,10 @@
 #include "engine/numeric/elementary.h"
 #include "engine/numeric/lanes.h"
 
-/* The words of draws first .. first + NOISE_CHUNK - 1 (modulo 2^32), as pound_random_words gives each of
- * them.
+/* The words of draws first .. first + NOISE_CHUNK - 1 (modulo 2^32), the same as from pound_random_words.
  *
  * Source   Salmon, Moraes, Dror, Shaw 2011, Parallel random numbers: as easy as 1, 2, 3, SC11, section 3.3
- * Test     unit_normals: chunks_hold_the_words_of_single_draws, through the normals made of them */
+ * Test     unit_normals: chunks_hold_the_words_of_single_draws, by the normal numbers computed from them */
 LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NOISE_WORDS][NOISE_CHUNK])
 {
 	const philox4x32_ctr_t counter = pound_random_counter(stream, first);
@@ -26,7 +25,7 @@ LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NO
 	const vu zero = {0};
 	for (int l = 0; l < NOISE_CHUNK; l++)
 		w[0][l] = counter.v[0] + (uint32_t)l;
-	// two vectors at a time, as each round waits for the one before
+	// two vectors at a time, because each round waits for the previous one
 	enum { TWO = 2 };
 	for (int l = 0; l < NOISE_CHUNK; l += TWO * W) {
 		vu x0[TWO], x1[TWO], x2[TWO], x3[TWO];
@@ -37,7 +36,7 @@ LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NO
 			x3[t] = zero + counter.v[3];
 		}
 		uint32_t k0 = key.v[0], k1 = key.v[1];
-		// words in 64 bits, so that vectors keep them in place; the upper halves are rubbish between rounds
+		// 32-bit words in 64-bit elements, as vproduct needs them; the upper halves are arbitrary between rounds
 #pragma GCC unroll 10
 		for (int round = 0; round < 10; round++) {
 #pragma GCC unroll 2
@@ -60,7 +59,7 @@ LANE_INLINE void words(struct pound_stream stream, uint32_t first, uint64_t w[NO
 	}
 }
 
-/* (word + 1/2) / 2^32, in (0, 1): the word becomes the last bits of a number between 2^52 and 2^53 */
+/* (word + 1/2) / 2^32, in (0, 1): the word is put into the last bits of a double in [2^52, 2^53) */
 static inline double fraction(uint64_t word)
 {
 	return (pound_elementary_double(word | 0x4330000000000000) - (0x1p52 - 0.5)) * 0x1p-32;
@@ -69,11 +68,11 @@ static inline double fraction(uint64_t word)
 /* Independent standard normal numbers of a chunk of draws.
  *
  * Given    stream, first                            draws first .. first + NOISE_CHUNK - 1 of the stream
- * Returns  z         (NOISE_WORDS x NOISE_CHUNK)    z[w][l] is number w of draw first + l, whatever the lanes
+ * Returns  z         (NOISE_WORDS x NOISE_CHUNK)    z[w][l] is number w of draw first + l, for any lane width
  *
  *   z_w = sqrt(-2 ln u) cos 2 pi v,   z_w+1 = sqrt(-2 ln u) sin 2 pi v,   u, v from words w, w + 1
  *
- * Valid    |z| <= 6.77, as u >= 2^-33: a true normal number goes beyond that once in 8e10.
+ * Valid    |z| <= 6.77, as u >= 2^-33: a normal number exceeds that with probability 1 / 8e10.
  * Test     unit_normals */
 void POUND_NORMALS(struct pound_stream stream, uint32_t first, double z[NOISE_WORDS][NOISE_CHUNK])
 {

@@ -1,6 +1,6 @@
-/* suite.c - recorded ground motions as the signals of a scene: which record a signal is, and its factor.
+/* suite.c - recorded ground motions as the signals of a scene: record and factor of each signal.
  *
- * For what runs it a signal is an excitation of type record, with samples, step and factor of its own. */
+ * To solvers a signal of a suite is an excitation of type record, with the samples, time step and factor of that record. */
 #include "engine/ground/suite.h"
 
 #include <assert.h>
@@ -30,16 +30,16 @@ void pound_suite_samples(const struct pound_excitation *suite, int *least, int *
 	}
 }
 
-/* Which record a signal of a suite is, and its factor.
+/* Record and factor of a signal of a suite.
  *
- * Given    references  (n_records)  m/s2   what the intensity is divided by; NULL: the records are not scaled
- *          stream      -            -      of the signal, of whose draw 0 it depends where records are drawn
- * Returns  value       record       -      signal k, or k/2 with both directions, the second one reversed
- *                      factor       -
+ * Given    references  (n_records)  m/s2   reference intensities (suite_references.c); NULL: records are not scaled
+ *          stream      -            -      random stream of the signal; if records are drawn, its draw 0 selects k
+ * Returns  value       record       -      k, the signal's number or drawn; with both directions k / 2
+ *                      factor       -      with both directions negative for odd k
  *
- *   factor = F f_k s_k, reversed: -F f_k s_k      s_k = 1 or intensity / reference_k
+ *   factor = F f_r s_r, reversed: -F f_r s_r      s_r = 1 or intensity / reference_r
  *
- * with F the factor of the suite and f_k the factor of the record.
+ * with r the record, F the factor of the suite and f_r the factor of the record.  record->reversed changes the sign, too.
  *
  * Test     unit_suite: factors_are_those_of_their_definition; a_drawn_record_is_any_with_the_same_probability
  */

@@ -1,14 +1,14 @@
-/* bracket.c - a root of a function of one variable, one evaluation after the other.
+/* bracket.c - a root of a decreasing function of one variable; the caller evaluates the function.
  *
- * 1. While all values have one sign: steps to the side where a falling function has its root, by the secant;
- * 2. once both signs are there: inverse quadratic interpolation where three points allow it, else bisection. */
+ * 1. Until the root is bracketed: limited secant steps, up if the function is positive and down if it is negative.
+ * 2. Then Chandrupatla's method: inverse quadratic interpolation if the last three points allow it, else bisection. */
 #include "engine/numeric/bracket.h"
 
 #include <float.h>
 #include <math.h>
 
-/* Least step towards the other sign over the function's value, and how much longer than the last one it may be: a secant
- * that falls short of the root would never enclose it. */
+/* Smallest step over |f|, and largest step over the previous step, until the root is bracketed: secant steps that all stop
+ * short of the root would never bracket it. */
 static const double STEP_LEAST = 0.5, STEP_GROWTH = 4;
 
 static double step_open(const struct pound_bracket *b)
@@ -21,7 +21,7 @@ static double step_open(const struct pound_bracket *b)
 	return copysign(fmin(fmax(step, STEP_LEAST * fabs(f)), most), f);
 }
 
-/* Where between both ends to go on, as a share of the way from the newest to the other.
+/* The next point in a bracket, as a fraction of the way from the newest point to the other end.
  *
  * Source   Chandrupatla 1997, Advances in Engineering Software 28, 145-149
  */
@@ -38,17 +38,17 @@ static double share_closed(const struct pound_bracket *b)
 	return near + far;
 }
 
-/* Takes the function's value at a point.
+/* Takes the value of the function at a point and returns the next point.
  *
- * Given    f     not 0; > 0 where the root of a falling function lies above x
+ * Given    x, f  a point and the value there, not 0: > 0 if the root is above x
  * Returns  next  the point to evaluate next
- *          value false: both ends are next to each other
+ *          value false: the ends of the bracket are at most 2 eps max(1, |x|) apart, so the function jumps over 0
  * Test     unit_bracket
  */
 bool pound_bracket_next(struct pound_bracket *b, double x, double f, double *next)
 {
 	const bool changes = b->n > 0 && (f > 0) != (b->f[0] > 0);
-	// the newest is left where the one that comes now is an end of its sign, else it is the other end
+	// in a bracket, the new point replaces the newest one if both have the same sign; else the newest becomes x[1]
 	const int left = b->closed && !changes ? 0 : 1;
 	b->x[2] = b->x[left], b->f[2] = b->f[left];
 	if (left)

@@ -1,4 +1,4 @@
-/* cpu_width.c - which lane counts this machine has; all of them give the same bits. */
+/* cpu_width.c - the lane counts that this processor supports; all give the same bits. */
 #include <stdbool.h>
 
 #include "engine/numeric/cpu_width.h"
@@ -31,9 +31,10 @@ static const struct width {
     [POUND_WIDTH_PORTABLE] = {1, always},
 };
 
-/* The compilation to run at a lane count; 0: the widest there is.
+/* The compilation to run for a lane count.
  *
- * Returns  value  one of the enum in cpu_width.h; -1: this machine has no such lanes
+ * Given    lanes  8, 4 or 1; 0: the most that the processor supports
+ * Returns  value  one of the enum in cpu_width.h; -1: not supported by this processor
  */
 int pound_dispatch_width(int lanes)
 {

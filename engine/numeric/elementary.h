@@ -1,8 +1,8 @@
-/* elementary.h - logarithm, exponential, sine and cosine from +, -, *, / alone.
+/* elementary.h - logarithm, exponential, sine and cosine from +, -, *, / only.
  *
- * The C library's differ from one machine to the next in the last bit; these give the same bits everywhere. 
- * No branches and no 64-bit integer conversions: a loop over an array becomes vector instructions. The
- * polynomials interpolate at Chebyshev points; their own error is below 0.2 units of the last place. */
+ * Functions of the C library differ between machines in the last bit; these give the same bits everywhere.
+ * No branches and no conversions of 64-bit integers, so compilers vectorize loops over arrays.
+ * The polynomials interpolate at Chebyshev points; their approximation error is below 0.2 ulp. */
 #ifndef ELEMENTARY_H
 #define ELEMENTARY_H
 
@@ -23,7 +23,7 @@ static inline double pound_elementary_double(uint64_t bits)
 	return x;
 }
 
-/* Natural logarithm to 2 units of the last place, x > 0, finite and normal.
+/* Natural logarithm to 2 ulp; x > 0, finite and normal.
  *
  *   x = 2^e m, m in [1/sqrt 2, sqrt 2)     f = m - 1     s = f / (2 + f)
  *   ln m = 2 artanh s = 2 s + s z L(z) = f - s (f - z L(z)),   z = s^2 */
@@ -32,23 +32,23 @@ static inline double pound_elementary_log(double x)
 	const uint64_t half_root = 0x3fe6a09e667f3bcd; /* 1/sqrt 2 */
 	const uint64_t scaled = pound_elementary_bits(x) - half_root + ((uint64_t)1023 << 52);
 	const double f = pound_elementary_double((scaled & 0x000fffffffffffff) + half_root) - 1;
-	// 2^52 + biased exponent, put together from bits
+	// the bits of 2^52 + biased exponent
 	const double e = pound_elementary_double((scaled >> 52) | 0x4330000000000000) - (0x1p52 + 1023);
 	const double s = f / (2 + f), z = s * s;
-	// sums in pairs: a vector unit need not wait for each term
+	// sums in pairs (Estrin) shorten the chain of dependent operations
 	const double z2 = z * z;
 	const double l01 = 0x1.5555555555558p-1 + z * 0x1.9999999995273p-2;
 	const double l23 = 0x1.2492492dfd86cp-2 + z * 0x1.c71c62d5e53e0p-3;
 	const double l45 = 0x1.7462b91b8df65p-3 + z * 0x1.39fdcceb4bb45p-3;
 	const double l = l01 + z2 * (l23 + z2 * (l45 + z2 * 0x1.2b5f68a50d903p-3));
-	// ln 2 in two parts; e times the first is exact
+	// ln 2 as the sum of two doubles; e times the first one is exact
 	return e * 0x1.62e42fefa3800p-1 + (f - (s * (f - z * l) - e * 0x1.ef35793c76730p-45));
 }
 
-/* Sine and cosine of 2 pi x to 2 units of the last place, |x| < 2^49.
+/* Sine and cosine of 2 pi x to 2 ulp, |x| < 2^49.
  *
- *   4 x = q + r, q whole, |r| <= 1/2     sin(pi/2 r) = r (pi/2 + z S(z)),   cos(pi/2 r) = 1 + z C(z),   z = r^2
- *   an odd quarter q swaps the two, the quarters 2, 3 turn the sine and 1, 2 the cosine. */
+ *   4 x = q + r, q an integer, |r| <= 1/2     sin(pi/2 r) = r (pi/2 + z S(z)),   cos(pi/2 r) = 1 + z C(z),   z = r^2
+ *   odd q: sine and cosine are swapped;  q mod 4 = 2, 3: the sine changes its sign;  q mod 4 = 1, 2: the cosine does. */
 static inline void pound_elementary_sincos(double x, double *sine, double *cosine)
 {
 	const double shifted = 4 * x + 0x1.8p52;
@@ -70,7 +70,7 @@ static inline void pound_elementary_sincos(double x, double *sine, double *cosin
 	*cosine = pound_elementary_double((b ^ swap) ^ ((q + 1) & 2) << 62);
 }
 
-/* e^x to 2 units of the last place, |x| < 708.
+/* e^x to 2 ulp, |x| < 708.
  *
  *   x = k ln 2 + r, |r| <= ln 2/2     e^x = 2^k (1 + r + r^2/2! + ... + r^13/13!) */
 static inline double pound_elementary_exp(double x)
@@ -78,11 +78,11 @@ static inline double pound_elementary_exp(double x)
 	static const double share[] = {1.0 / 13, 1.0 / 12, 1.0 / 11, 1.0 / 10, 1.0 / 9, 1.0 / 8,
 	                               1.0 / 7,  1.0 / 6,  1.0 / 5,  1.0 / 4,  1.0 / 3, 1.0 / 2};
 	const double shifted = x * 0x1.71547652b82fep+0 + 0x1.8p52, k = shifted - 0x1.8p52;
-	const double r = (x - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45; // ln 2 in two parts
+	const double r = (x - k * 0x1.62e42fefa3800p-1) - k * 0x1.ef35793c76730p-45; // ln 2 as two doubles
 	double sum = 1;
 	for (int n = 0; n < 12; n++)
 		sum = 1 + r * share[n] * sum;
-	// the whole number is in the last bits of `shifted`
+	// the integer k is in the last bits of `shifted`
 	const uint64_t power = (pound_elementary_bits(shifted) + 1023) << 52;
 	return pound_elementary_double(power) * (1 + r * sum);
 }

@@ -1,10 +1,10 @@
-/* envelope.c - symmetric matrices by rows from their first entry on. */
+/* envelope.c - symmetric matrices in envelope (skyline) storage, and their decomposition L D L'. */
 #include "engine/numeric/envelope.h"
 
-/* Lays the rows one behind another.
+/* Fills `begin`, with the rows one after another.
  *
- * Given    first   (n)   the first column with an entry of each row
- * Returns  value   how many entries there are
+ * Given    first   (n)   column of the first entry of each row
+ * Returns  value         number of entries
  */
 int pound_envelope_lay(struct pound_envelope *e)
 {
@@ -16,15 +16,15 @@ int pound_envelope_lay(struct pound_envelope *e)
 	return at;
 }
 
-/* Adds to an entry and to the same one above the diagonal. */
+/* Adds to entries (i, j) and (j, i), which are stored once. */
 void pound_envelope_add(struct pound_envelope *e, int i, int j, double value)
 {
 	e->values[i > j ? e->begin[i] + j : e->begin[j] + i] += value;
 }
 
-/* Puts L D L' in place of a matrix.
+/* Replaces a matrix by its decomposition L D L'.
  *
- * Returns  value   false: it is not positive definite, and nothing can be solved with it
+ * Returns  value   false: the matrix is not positive definite, and pound_envelope_solve must not be called
  * Source   Jennings 1966, Comput. J. 9, 281-285
  * Test     unit_envelope
  */
@@ -37,7 +37,7 @@ bool pound_envelope_decompose(struct pound_envelope *e)
 			double sum = row[j];
 			for (int k = e->first[i] > e->first[j] ? e->first[i] : e->first[j]; k < j; k++)
 				sum -= row[k] * other[k];
-			row[j] = sum; // times D
+			row[j] = sum; // entry of L D
 		}
 		for (int j = e->first[i]; j < i; j++) {
 			const double entry = row[j] / e->values[e->begin[j] + j];
@@ -45,16 +45,16 @@ bool pound_envelope_decompose(struct pound_envelope *e)
 			row[j] = entry;
 		}
 		row[i] = diagonal;
-		// written so that no number is not positive
+		// NAN counts as not positive
 		if (!(diagonal > 0))
 			return false;
 	}
 	return true;
 }
 
-/* Solves with a decomposed matrix.
+/* Solves a linear system with a decomposed matrix.
  *
- * Given    x   (n)   right side
+ * Given    x   (n)   right-hand side
  * Returns  x   (n)   solution
  */
 void pound_envelope_solve(const struct pound_envelope *e, double *x)

@@ -1,14 +1,14 @@
-/* envelope.h - symmetric matrices of which each row is stored from its first entry on, and their decomposition L D L'. */
+/* envelope.h - symmetric matrices in envelope (skyline) storage: each row from its first entry to the diagonal. */
 #ifndef ENVELOPE_H
 #define ENVELOPE_H
 
 #include <stdbool.h>
 
-/* Entry (i, j) with first[i] <= j <= i is values[begin[i] + j]; the memory is the caller's. */
+/* Entry (i, j) with first[i] <= j <= i is values[begin[i] + j].  The caller owns the memory. */
 struct pound_envelope {
 	int n;
 	int *first, *begin; /* (n) */
-	double *values;     /* (pound_envelope_lay) */
+	double *values;     /* (value of pound_envelope_lay) */
 };
 
 int pound_envelope_lay(struct pound_envelope *e);

@@ -1,11 +1,11 @@
-/* hash.h - hash tables of keys that are numbers: as many slots as a power of two, one looked into after the other. */
+/* hash.h - hash tables with linear probing, for keys of doubles; the number of slots is a power of two. */
 #ifndef HASH_H
 #define HASH_H
 
 #include <stdint.h>
 #include <string.h>
 
-/* Slots of a table of n keys: at least twice as many. */
+/* Slots of a table for n keys: at least 2 n. */
 static inline int pound_hash_slots(int n)
 {
 	int slots = 16;
@@ -14,9 +14,10 @@ static inline int pound_hash_slots(int n)
 	return slots;
 }
 
-/* The slot in which the search for a key begins.
+/* The slot where the search for a key begins.
  *
- * Given    key    (n)  compared by its bits;  hash: of what else belongs to it, 0: nothing
+ * Given    hash   of further parts of the key; 0: there are none
+ *          key    (n)  hashed by its bits
  *          slots  of the table
  */
 static inline int pound_hash_slot(uint64_t hash, const double *key, int n, int slots)

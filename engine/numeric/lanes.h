@@ -1,9 +1,9 @@
-/* lanes.h - W doubles side by side: GCC vectors for W = 4 and 8, plain doubles for W = 1.
+/* lanes.h - vectors of W doubles, one per lane: GCC vectors for W = 4 and 8, plain doubles for W = 1.
  *
- * Every operation acts on each lane alone and rounds once, so the bits of a lane do not depend on W.
- * Arithmetic is the vector types' own; comparisons give a mask, which has & | ~ and the functions below.  The few
- * operations that the types do not have are here for each width as the one instruction it has for them: left to be
- * recognised from a loop over the lanes they came out as dozens. */
+ * Every operation acts on each lane separately and rounds once, so the bits of a lane do not depend on W.
+ * Arithmetic uses the operators of the vector types; comparisons give masks, which have & | ~ and the functions below.
+ * Operations without an operator are intrinsics for each width: from a loop over the lanes compilers make dozens of
+ * instructions. */
 #ifndef LANES_H
 #define LANES_H
 
@@ -16,11 +16,11 @@
 
 enum {
 	W = POUND_LANES,
-	ROW = 8, /* doubles of a row of memory that is carried in and out of lanes at once: a cache line */
+	ROW = 8, /* doubles that rows_load and rows_store move per lane: a cache line */
 };
 
 #define LANE_INLINE static inline __attribute__((always_inline))
-/* one copy for all who call it: straight code that is used often is still in the cache, and what is rare is not in its way */
+/* not inlined: one copy of a large function stays in the instruction cache, and rare code does not fill it */
 #define LANE_SHARED static __attribute__((noinline))
 
 #if POUND_LANES == 1
@@ -55,7 +55,7 @@ typedef double vd __attribute__((vector_size(8 * POUND_LANES)));
 typedef uint64_t vu __attribute__((vector_size(8 * POUND_LANES)));
 #define LANE_ABS(a)    ((vd)((lane_bits)(a)&INT64_MAX))
 typedef int64_t lane_bits __attribute__((vector_size(8 * POUND_LANES)));
-#define LANE_AT(at, l) (*(const double *)(at)[l]) /* a gather takes twice as long */
+#define LANE_AT(at, l) (*(const double *)(at)[l]) /* a gather instruction takes twice as long */
 
 #if POUND_LANES == 4
 typedef lane_bits vm;
@@ -120,10 +120,11 @@ LANE_INLINE vd vselect(vm mask, vd a, vd b)
 {
 	return LANE_SELECT(mask, a, b);
 }
+/* bit l: lane l */
 LANE_INLINE unsigned vbits(vm mask)
 {
 	return LANE_BITS(mask);
-} /* bit l: lane l */
+}
 LANE_INLINE vm vmask(unsigned bits)
 {
 	return LANE_MASK(bits);
@@ -133,10 +134,11 @@ LANE_INLINE int vany(vm mask)
 	return vbits(mask) != 0;
 }
 
+/* maximum and minimum: a if both are equal or one is NAN */
 LANE_INLINE vd vmax(vd a, vd b)
 {
 	return LANE_MAX(a, b);
-} /* a where they are equal or not ordered */
+}
 LANE_INLINE vd vmin(vd a, vd b)
 {
 	return LANE_MIN(a, b);
@@ -153,32 +155,34 @@ LANE_INLINE vd vfloor(vd a)
 {
 	return LANE_FLOOR(a);
 }
+/* a b + c, rounded once; no other operation is fused */
 LANE_INLINE vd vfma(vd a, vd b, vd c)
 {
 	return LANE_FMA(a, b, c);
-} /* a b + c, rounded once: the one fused operation */
+}
 
+/* product of the lower 32 bits of each lane */
 LANE_INLINE vu vproduct(vu a, vu b)
 {
 	return LANE_PRODUCT(a, b);
-} /* of the lower halves */
+}
 
-/* ---- neighbors: a and b follow each other in memory ---- */
+/* ---- shifts by one lane: b follows a in memory ---- */
 
-/* Each lane has what is one further on, the last one the first of b. */
+/* Each lane gets the next element of a; the last lane gets the first element of b. */
 LANE_INLINE vd vabove(vd a, vd b)
 {
 	return LANE_ABOVE(a, b);
 }
-/* Each lane of b has what is one before, the first one the last of a. */
+/* Each lane gets the previous element of b; the first lane gets the last element of a. */
 LANE_INLINE vd vbelow(vd a, vd b)
 {
 	return LANE_BELOW(a, b);
 }
 
-/* ---- one double of memory for each lane ---- */
+/* ---- addresses of doubles, one per lane ---- */
 
-/* The next double in the lanes of a mask. */
+/* Addresses, moved on by one double in the lanes of a mask. */
 LANE_INLINE vu vnext(vm mask, vu at)
 {
 	return LANE_ADD(mask, at, sizeof(double));
@@ -188,11 +192,11 @@ LANE_INLINE vd vgather(vu at)
 	return LANE_GATHER(at);
 }
 
-/* ---- rows of memory in and out of lanes: lane l of column j is row[l][at + j] ---- */
+/* ---- ROW doubles per lane to and from memory: lane l of vector j is row[l][at + j] ---- */
 
 #if POUND_LANES == 8
 
-/* Lane l of vector j becomes lane j of vector l. */
+/* Transposes: lane l of vector j becomes lane j of vector l. */
 LANE_INLINE void lanes_transpose(vd x[8])
 {
 	vd pair[8], four[8];
@@ -275,8 +279,8 @@ LANE_INLINE void rows_store(const vd from[ROW], double *const row[W], int at)
 
 #endif
 
-/* Before a return to code of another width: what is left in the upper halves of the registers would slow that down, and the
- * compiler forgets it at the end of long functions. */
+/* Call before returning to code of another width: nonzero upper halves of registers slow that code down, and the compiler
+ * does not always clear them at the end of long functions. */
 LANE_INLINE void lanes_leave(void)
 {
 #if POUND_LANES > 1
@@ -284,7 +288,7 @@ LANE_INLINE void lanes_leave(void)
 #endif
 }
 
-/* The lanes of a vector in memory. */
+/* A vector to and from memory. */
 LANE_INLINE void lanes_store(double to[W], vd x)
 {
 	__builtin_memcpy(to, &x, sizeof x);
@@ -296,7 +300,7 @@ LANE_INLINE vd lanes_load(const double from[W])
 	return x;
 }
 
-/* Numbers that were made one by one just now: a vector read from memory would wait for all their stores. */
+/* A vector of numbers that were just computed one by one: a vector load would wait until all of them are stored. */
 LANE_INLINE vd lanes_of(const double x[W])
 {
 	return (vd){LANE_EACH(x)};

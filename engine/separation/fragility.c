@@ -1,9 +1,9 @@
-/* fragility.c - fragility curves: the probability to pound over the intensity of the ground motion.
+/* fragility.c - fragility curves: the probability of pounding as a function of the intensity x of the ground motion.
  *
  *   P(x) = Phi(a + b ln x) = Phi(ln(x / median) / dispersion)
  *
- * 1. Fisher scoring on the likelihood of the counts, which has one maximum.
- * 2. Intervals from the scores of the clusters, which may be the same ground motions at all intensities. */
+ * 1. Maximum likelihood of the counts by Fisher scoring; the likelihood has one maximum.
+ * 2. Intervals by a sandwich estimator, from the scores of the clusters summed over all intensities. */
 #include <math.h>
 
 #include <gsl/gsl_cdf.h>
@@ -15,7 +15,7 @@
 enum { ROUNDS = 100, HALVINGS = 40 };
 
 static const double NORMAL_95 = 1.959963984540054; // quantile 0.975
-static const double STEP_LEAST = 1e-12;            // of a + b ln x, where a step is over
+static const double STEP_LEAST = 1e-12;            // sum of the changes of a and b that ends the iteration
 
 /* The line a + b (ln x - center). */
 struct line {
@@ -27,14 +27,14 @@ struct likelihood {
 	double value, gradient[2], information[3];
 };
 
-/* density over probability below, of a normal deviate; by their asymptote where both vanish */
+/* pdf(z) / Phi(z) of the standard normal distribution; by the asymptote -z where both underflow */
 static double density_over(double z)
 {
 	const double below = gsl_cdf_ugaussian_P(z);
 	return below > 1e-300 ? gsl_ran_ugaussian_pdf(z) / below : -z;
 }
 
-/* Runs of one cluster, or of all of them (cluster < 0), at a stripe. */
+/* Counts of one cluster at an intensity; cluster < 0: of all clusters. */
 static struct pound_needed_count count_of(const struct pound_stripes *stripes, int stripe, int cluster,
                                           double gap)
 {
@@ -69,7 +69,8 @@ static struct likelihood likelihood_of(const struct pound_stripes *stripes, int 
 	return l;
 }
 
-/* Whether the counts have a curve: some run survives a stronger motion than another one pounds at, and the reverse. */
+/* Whether the likelihood has a maximum at finite a and b: a run without pounding is above the lowest intensity with pounding, and
+ * a run with pounding is above the lowest intensity without. */
 static bool overlap(const struct pound_stripes *stripes, double gap)
 {
 	int first_pounds = stripes->n, last_pounds = -1, first_survives = stripes->n, last_survives = -1;
@@ -87,7 +88,7 @@ static bool overlap(const struct pound_stripes *stripes, double gap)
 	return last_survives > first_pounds && last_pounds > first_survives;
 }
 
-/* x = information^-1 y; false: it is singular */
+/* x = information^-1 y; false: the information is singular */
 static bool solve(const double information[3], const double y[2], double x[2])
 {
 	const double det = information[0] * information[2] - information[1] * information[1];
@@ -96,12 +97,13 @@ static bool solve(const double information[3], const double y[2], double x[2])
 	return det > 0 && isfinite(x[0]) && isfinite(x[1]);
 }
 
-/* e^x within the range of numbers. */
+/* e^x; x is limited to [-700, 700], so that nothing overflows. */
 static double exponential(double x)
 {
 	return pound_elementary_exp(fmin(fmax(x, -700), 700));
 }
 
+/* A value and its 95 % interval, from the logarithm of the value and the variance of the logarithm. */
 static struct pound_estimate around(double logarithm, double variance)
 {
 	const double half = NORMAL_95 * sqrt(variance);
@@ -109,7 +111,7 @@ static struct pound_estimate around(double logarithm, double variance)
 	                               exponential(logarithm + half)};
 }
 
-/* Median and dispersion with their intervals, from the line and the variance of its numbers. */
+/* Median and dispersion with their intervals, by the delta method from a, b and their covariance (aa, ab, bb). */
 static struct pound_fragility described(const struct line *line, const double variance[3], double center)
 {
 	// ln median = center - a/b, ln dispersion = -ln b
@@ -123,10 +125,13 @@ static struct pound_fragility described(const struct line *line, const double va
 
 /* The lognormal fragility curve of a gap by maximum likelihood.
  *
- * Returns  value   NAN where the counts have none: no run pounds, all do, or all do from one intensity on
+ * Given    stripes          counts of needed gaps at each intensity; at least 2 clusters
+ *          gap      m
+ * Returns  value            NAN if there is no curve: no run pounds, all runs pound, or all pound from one intensity on
+ *                           and none below
  *
- * Intervals: with information I and scores s_c of the clusters, I^-1 (n/(n - 1) sum s_c s_c') I^-1, which holds when the same
- * ground motions are scaled to all intensities as well as when every intensity has its own.
+ * Covariance of a and b, with the information I and the scores s_c of n clusters: I^-1 (n/(n - 1) sum s_c s_c') I^-1.  It is
+ * valid if the same ground motions are scaled to all intensities, and if each intensity has its own ground motions.
  *
  * Source   Baker 2015, Earthquake Spectra 31, 579-599; Liang and Zeger 1986, Biometrika 73, 13-22
  * Test     unit_separation: a_fragility_curve_is_found_again_its_intervals_cover
@@ -156,7 +161,7 @@ struct pound_fragility pound_fragility_fit(const struct pound_stripes *stripes, 
 				break;
 		}
 		if (!(there.value >= l.value))
-			break; // no better than rounding
+			break; // no improvement above rounding errors
 		line = next;
 		l = there;
 	}

@@ -1,4 +1,4 @@
-/* gap_needed.c - the probability that bodies with a gap pound, and the gap for a probability, from the gaps that runs need. */
+/* gap_needed.c - the probability of pounding with a gap, and the gap for a probability, from the gaps needed in runs. */
 #include "engine/separation/separation.h"
 
 #include <math.h>
@@ -8,13 +8,14 @@
 
 enum { BISECTIONS = 60 };
 
-/* Runs that an interval counts at most: from there on the continued fraction behind it is too long, and it is narrow. */
+/* Most runs that an interval counts: with more, the continued fraction of the beta distribution is too long, and the interval is
+ * narrow anyway. */
 static const double RUNS_COUNTED = 1e5;
 
-/* on either side of a 95 % interval */
+/* probability on each side of a 95 % interval */
 static const double TAIL = 0.025;
 
-/* Sorted gaps that are larger than a gap. */
+/* Number of sorted gaps that are larger than a gap. */
 static int64_t count_above(const double *sorted, int64_t n, double gap)
 {
 	int64_t low = -1, high = n;
@@ -28,7 +29,9 @@ static int64_t count_above(const double *sorted, int64_t n, double gap)
 	return n - high;
 }
 
-/* Test     unit_separation: pounding_is_counted_run_by_run */
+/* Counts the runs that need more than a gap; runs without a result are left out.
+ *
+ * Test     unit_separation: pounding_is_counted_run_by_run */
 struct pound_needed_count pound_needed_count(const struct pound_needed *needed, double gap)
 {
 	struct pound_needed_count count = {0};
@@ -48,7 +51,7 @@ struct pound_needed_count pound_needed_count(const struct pound_needed *needed, 
 	return count;
 }
 
-/* The quantile of a beta distribution; its ends where a parameter is 0. */
+/* The quantile of a beta distribution by bisection; a = 0: 0, b = 0: 1. */
 static double beta_quantile(double p, double a, double b)
 {
 	double low = 0, high = 1;
@@ -66,11 +69,12 @@ static double beta_quantile(double p, double a, double b)
 	return 0.5 * (low + high);
 }
 
-/* Runs that are worth as much as independent ones.
+/* Effective number of independent runs of dependent runs in clusters.
  *
- *   n_eff = p (1 - p) / Var p * (t_(n-1) / t_(clusters-1))^2,   Var p = clusters/(clusters - 1) sum_c (k_c - p n_c)^2 / n^2
+ *   n_eff = p (1 - p) / Var p * (t_(n-1) / t_(m-1))^2,   Var p = m/(m - 1) sum_c (k_c - p n_c)^2 / n^2,   at most n
  *
- * Where all runs pound or none does the variance is not known, and a cluster counts as one run. */
+ * with n runs in m clusters, k_c of the n_c runs of cluster c pounding, and the 0.975 quantiles t of Student's distribution.
+ * If all runs pound or none does, the variance is unknown, and each cluster counts as one run. */
 static double runs_effective(const struct pound_needed *needed, double gap,
                              const struct pound_needed_count *count)
 {
@@ -90,10 +94,9 @@ static double runs_effective(const struct pound_needed *needed, double gap,
 	return fmin(p * (1 - p) / variance * t * t, n);
 }
 
-/* The probability that a run pounds with a gap, with its 95 % interval.
+/* The probability that a run pounds with a gap, with its 95 % interval; NAN: no run has a result.
  *
- * Independent runs have the exact binomial interval; clusters of runs have the interval of as many independent runs as
- * give the same variance.
+ * Independent runs: the exact binomial interval.  Clusters of runs: the interval of the effective number of independent runs.
  *
  * Source   Clopper and Pearson 1934, Biometrika 26, 404-413; Korn and Graubard 1998, Survey Methodology 24, 193-201
  * Test     unit_separation: the_band_is_the_exact_binomial_one, clusters_of_equal_runs_count_once
@@ -111,7 +114,7 @@ struct pound_estimate pound_needed_probability(const struct pound_needed *needed
 	                               beta_quantile(1 - TAIL, k + 1, n - k)};
 }
 
-/* The gaps needed in ascending order, without runs that have no result; returns how many. */
+/* The needed gaps in ascending order, without runs that have no result; returns their number. */
 int64_t pound_needed_sort(const struct pound_needed *needed, double *sorted)
 {
 	int64_t n = 0;
@@ -122,8 +125,11 @@ int64_t pound_needed_sort(const struct pound_needed *needed, double *sorted)
 	return n;
 }
 
-/* The first of n sorted gaps, from index 0 on, at which an end of the interval (or the value) of the probability to pound is
- * at most, or below, a probability; n: none. */
+/* Index of the first of n sorted gaps at which pounding is rare enough; n: there is none.
+ *
+ * Given    end   -1: low end of the interval of the probability of pounding <= probability; 0: value <= probability;
+ *                1: high end < probability
+ */
 static int64_t first_below(const struct pound_needed *needed, const double *sorted, int64_t n,
                            double probability, int end)
 {
@@ -142,12 +148,13 @@ static int64_t first_below(const struct pound_needed *needed, const double *sort
 	return high;
 }
 
-/* The gap that is too small with a probability, and its 95 % interval.
+/* The gap at which pounding has a given probability, and its 95 % interval.
  *
- * Given    sorted   (n)   by pound_needed_sort
- * Returns  value    the smallest gap needed that at most that share of the runs exceeds
- *          low, high   gaps between which the interval of the probability to pound has that probability: of independent runs
- *                   order statistics, whatever the distribution; high NAN: the runs are too few for an upper limit
+ * Given    sorted      (n)   m   by pound_needed_sort
+ * Returns  value             m   the smallest needed gap that at most a fraction `probability` of the runs exceeds
+ *          low, high         m   the gaps at which the ends of the interval of the probability of pounding reach that
+ *                                probability; for independent runs these are the distribution-free order statistics;
+ *                                high NAN: too few runs for an upper limit
  *
  * Source   David and Nagaraja 2003, Order Statistics, 7.1; Woodruff 1952, J. Am. Stat. Assoc. 47, 635-646
  * Test     unit_separation: the_gap_for_a_probability_has_the_interval_of_order_statistics
@@ -160,7 +167,7 @@ struct pound_estimate pound_needed_gap(const struct pound_needed *needed, const 
 	const int64_t at = first_below(needed, sorted, n, probability, 0),
 	              low = first_below(needed, sorted, n, probability, -1),
 	              high = first_below(needed, sorted, n, probability, 1);
-	// even no gap at all may pound with that probability: every run needs more than -1 m
+	// whether the interval reaches down to gap 0; all runs need more than -1 m
 	const bool from_rest = pound_needed_probability(needed, -1).low <= probability;
 	return (struct pound_estimate){sorted[at < n ? at : n - 1], from_rest ? 0 : sorted[low < n ? low : n - 1],
 	                               high < n ? sorted[high] : NAN};

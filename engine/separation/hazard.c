@@ -1,10 +1,14 @@
-/* hazard.c - the mean annual rate of pounding, from the probability at each intensity and the rates of intensities.
+/* hazard.c - the mean annual rate of pounding, from the probability at each intensity and the hazard curve.
  *
- *   rate(gap) = integral of P(pounding | x, gap) -d lambda(x)
+ *   rate(gap) = integral of P(pounding | x, gap) |d lambda(x)|
  *
- * lambda is a straight line between points in logarithms, and P one between intensities over ln x; below the first intensity P is that
- * of the first one, beyond the last one it is 1, so that the rate is rather too high than too low.  It is a weighted sum of the
- * probabilities then, and the mean over the clusters of such sums. */
+ *   x        intensity of the ground motion
+ *   lambda   mean annual rate at which x is exceeded [1/a]: linear in logarithms between points of the hazard curve
+ *   P        linear in ln x between the intensities; below the first one constant, above the last one 1, which overestimates
+ *            the rate
+ *
+ * The rate is a weighted sum of the probabilities, plus the rate of exceeding the last intensity.  Its interval is from the
+ * scatter of the weighted sums of the clusters. */
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +19,7 @@
 
 static const double NORMAL_95 = 1.959963984540054; // quantile 0.975
 
-/* The rate at which an intensity is exceeded, between the points of the hazard curve; beyond them the rate at the nearest point. */
+/* The rate at which an intensity is exceeded; beyond the hazard curve the rate at its nearest point [1/a]. */
 static double exceeded(const struct pound_hazard *hazard, double x)
 {
 	int k = 0;
@@ -31,10 +35,13 @@ static double exceeded(const struct pound_hazard *hazard, double x)
 	       pound_elementary_exp(share * pound_elementary_log(hazard->rate[k] / hazard->rate[k - 1]));
 }
 
-/* Adds what lies between two intensities, inside of one line of the hazard and one of the probability.
+/* Adds the weights from an interval of intensities in which hazard curve and probability are each one straight line.
  *
- *   lambda = l0 e^(-k s), s = ln(x/x0) in [0, length]:   integral of -d lambda = l0 - l1
- *   integral of s -d lambda = (l0 - l1)/k - length l1 */
+ * Given    x        (2)   ends of the interval
+ *          stripes  (2)   the two intensities of stripes around it
+ *
+ *   lambda = l0 e^(-k s), s = ln(x/x0) in [0, length]:   integral of |d lambda| = l0 - l1
+ *   integral of s |d lambda| = (l0 - l1)/k - length l1 */
 static void piece_add(const struct pound_hazard *hazard, const double x[2], const double stripes[2],
                       double weights[2])
 {
@@ -49,7 +56,12 @@ static void piece_add(const struct pound_hazard *hazard, const double x[2], cons
 	weights[1] += up;
 }
 
-/* Test     unit_separation: the_rate_over_a_power_law_is_its_closed_form */
+/* The weights of the probabilities in the annual rate.
+ *
+ * Returns  weights  (stripes->n)  1/a
+ *          value                  1/a   rate of exceeding the last intensity
+ *
+ * Test     unit_separation: the_rate_over_a_power_law_is_its_closed_form */
 double pound_hazard_weights(const struct pound_hazard *hazard, const struct pound_stripes *stripes,
                             double *weights)
 {
@@ -69,7 +81,8 @@ double pound_hazard_weights(const struct pound_hazard *hazard, const struct poun
 	return exceeded(hazard, last);
 }
 
-/* The mean annual rate of pounding with a gap, with its 95 % interval from the scatter of the clusters. */
+/* The mean annual rate of pounding with a gap [1/a], with its 95 % interval from the scatter of the clusters; NAN: an intensity
+ * has no run with a result. */
 struct pound_estimate pound_hazard_rate(const struct pound_stripes *stripes, const double *weights,
                                         double beyond, double gap)
 {
@@ -98,7 +111,8 @@ struct pound_estimate pound_hazard_rate(const struct pound_stripes *stripes, con
 	return (struct pound_estimate){rate, fmax(rate - half, beyond), rate + half};
 }
 
-/* The first gap of n sorted ones at which an end of the interval of the rate (0: the rate) is at most a rate; NAN: none */
+/* The first sorted gap at which the low end of the rate's interval (end -1), the rate (0) or the high end (1) is at most
+ * `rate`; NAN: there is none. */
 static double first_rare(const struct pound_stripes *stripes, const double *weights, double beyond,
                          double rate, const struct pound_needed *sorted, int end)
 {
@@ -116,8 +130,10 @@ static double first_rare(const struct pound_stripes *stripes, const double *weig
 
 /* The gap at which the mean annual rate of pounding falls to a rate, and its 95 % interval.
  *
- * Given    scratch  (all runs of all stripes)
- * Returns  value    NAN: earthquakes beyond all stripes are as frequent as that; high NAN likewise
+ * Given    beyond            1/a   rate of exceeding the last intensity
+ *          rate              1/a
+ *          scratch           -     as many doubles as all stripes have runs
+ * Returns  value             m     NAN: no needed gap has a rate that low, as if `beyond` exceeds it; low and high likewise
  * Test     unit_separation: the_rate_over_a_power_law_is_its_closed_form
  */
 struct pound_estimate pound_hazard_gap(const struct pound_stripes *stripes, const double *weights,
@@ -129,7 +145,7 @@ struct pound_estimate pound_hazard_gap(const struct pound_stripes *stripes, cons
 	gsl_sort(scratch, 1, (size_t)n);
 	const struct pound_needed sorted = {.n_clusters = 1, .size = (int)n, .gap = scratch};
 	const double low = first_rare(stripes, weights, beyond, rate, &sorted, -1);
-	// even no gap at all may be that rare: every run needs more than -1 m
+	// whether the interval reaches down to gap 0; all runs need more than -1 m
 	const bool from_rest = pound_hazard_rate(stripes, weights, beyond, -1).low <= rate;
 	return (struct pound_estimate){first_rare(stripes, weights, beyond, rate, &sorted, 0),
 	                               from_rest ? 0 : low,

@@ -1,6 +1,6 @@
-/* rules.c - rules of codes and papers for the gap of two buildings, from the largest displacement of each alone.
+/* rules.c - rules of codes and papers for the gap of two buildings, from the largest displacement of each without the other.
  *
- * Adding one: a row in rules[]. */
+ * To add a rule, add a row to rules[]. */
 #include <assert.h>
 #include <math.h>
 
@@ -8,8 +8,8 @@
 
 static const struct {
 	const char *name, *text; /* the source, in a line */
-	bool summed;             /* displacements add up; else their squares, less what correlation takes off */
-	bool correlated;
+	bool summed;             /* absolute sum; else the root of the sum of squares */
+	bool correlated;         /* ... less the correlation term */
 } rules[] = {
     {"absolute_sum", "sum of both displacements, the most that a run may need: IS 1893 part 1 (2016), 7.11.3",
      .summed = true},
@@ -34,14 +34,14 @@ const char *pound_rule_text(int row)
 
 /* Correlation of the displacements of two linear oscillators under the same stationary white noise.
  *
- * Given    frequency   w     any unit   of both, > 0
- *          damping     xi    -          > 0 of one at least
- * Returns  value       rho   -          1: they move alike; 0: a wall, which does not move
+ * Given    frequency   w     any unit   of both oscillators; 0: a wall, which does not move
+ *          damping     xi    -          damping ratios, at least one > 0
+ * Returns  value       rho   -          1: equal oscillators; 0: one is a wall
  *
  *   rho = 8 (xi_1 xi_2)^1/2 (r xi_1 + xi_2) r^3/2 / ((1 - r^2)^2 + 4 xi_1 xi_2 r (1 + r^2) + 4 (xi_1^2 + xi_2^2) r^2)
  *   r = w_1 / w_2
  *
- * Valid    exact for white noise; near for ground motions that are broad beside both frequencies
+ * Valid    exact for white noise; a good estimate for ground motions that are broadband around both frequencies
  * Source   Der Kiureghian 1981, Earthquake Eng. Struct. Dyn. 9, 419-435
  * Test     unit_separation: the_correlation_is_that_of_white_noise
  */
@@ -58,10 +58,10 @@ double pound_rule_correlation(const double frequency[POUND_OSCILLATORS],
 	return 8 * sqrt(a * b) * (r * a + b) * r * sqrt(r) / below;
 }
 
-/* The gap that a rule asks for.
+/* The gap that a rule requires [m].
  *
- * Given    displacement  the largest of each body without the other one [m]
- *          correlation   of both
+ * Given    displacement  m   largest displacement of each body without the other body
+ *          correlation   -   of the two displacements, pound_rule_correlation
  */
 double pound_rule_gap(int rule, const double displacement[POUND_OSCILLATORS], double correlation)
 {

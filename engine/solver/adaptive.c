@@ -1,16 +1,16 @@
-/* adaptive.c - GSL's steppers of adaptive step, restarted at every event.
+/* adaptive.c - GSL's adaptive steppers, restarted at every event.
  *
- * 1. Between events the laws and the contact stay as they are and are followed beyond their edges, so that what the
- *    stepper sees is smooth.  Steps end at the samples, where the ground motion has its kinks.
- * 2. A step after which a guard has changed its sign is taken again, shorter and shorter, to the first such change.
- *    Their rates have guards too, so displacements, the overlap and the contact's force go one way within a step: no
- *    contact or release between two looks is missed, and the largest displacement is at a step's end.  A rate that turns
- *    twice within a step is found at its farthest between the turns, by the cubic through both ends.
- * 3. The stepper is rk8pd.  A stretch that takes it too many steps is stiff (bodies pressed together), and goes on
- *    with msbdf up to the next event or sample.
+ * 1. Between events each law and contact keeps its branch, extended beyond the branch's ends, so that the right-hand side is
+ *    smooth.  Steps end at the samples, where the ground acceleration has kinks.
+ * 2. If a guard has changed its sign after a step, the step is shortened to the first such change.  Rates have guards, too, so
+ *    displacements, overlaps and contact forces are monotonic within a step: no contact or release within a step is missed, and
+ *    the largest displacement is at the end of a step.  If a rate reverses twice within a step, the cubic through both ends
+ *    finds its extreme between the reversals, and the step ends there.
+ * 3. The stepper is rk8pd.  If it needs many steps the system is stiff (bodies in sustained contact), and msbdf continues to the
+ *    next event or sample.
  *
- * Independent of the march but for the laws and what an event is.  Pairs and rows of buildings are one scene of floors and
- * contacts (adaptive.h).  Velocities jump in pairs only. */
+ * Shares with the exact solver only the laws, the contact models and the rule which contacts count.  Pairs and rows of buildings
+ * are both a scene of floors and contacts (adaptive.h).  Only pairs may have rigid impacts. */
 #include "engine/solver/adaptive.h"
 
 #include <assert.h>
@@ -22,18 +22,18 @@
 #include <gsl/gsl_errno.h>
 
 enum {
-	STIFF_STEPS = 200,     /* of rk8pd since the last event in one sample interval; an impact takes some 20 */
-	STEPS_LIMIT = 1 << 17, /* in one sample interval: the tolerance is out of reach */
-	EVENTS_LIMIT = 2048,   /* in one sample interval: more is chatter */
-	STATES_STIFF = 256,    /* of which the implicit stepper has matrices, at most */
+	STIFF_STEPS = 200,     /* steps of rk8pd after which msbdf continues; an impact takes about 20 */
+	STEPS_LIMIT = 1 << 17, /* steps in one sample interval; more: the tolerance cannot be reached */
+	EVENTS_LIMIT = 2048,   /* events in one sample interval; more: chatter */
+	STATES_STIFF = 256,    /* most states for msbdf, which stores n x n matrices */
 };
 
-/* Below this part of the response to be expected a component need not be exact to the tolerance. */
+/* Fraction of the expected response below which a component need not be accurate to the tolerance. */
 static const double FLOOR = 1e-3;
 
 /* ---- events ---- */
 
-/* What a side of a contact moves by: magnitudes, of which its velocity has the roundings. */
+/* Magnitudes of the terms that accelerate a side of a contact, whose rounding errors are in its velocity. */
 static struct pound_counts_body side_of(const struct adaptive_task *c, const struct adaptive_link *l,
                                         int side)
 {
@@ -57,7 +57,7 @@ static struct pound_counts_body side_of(const struct adaptive_task *c, const str
 	return b;
 }
 
-/* A contact has ended, or the signal has in it. */
+/* Records a contact at its end or at the end of the signal; one that does not count (counts.h) adds no contact and no time. */
 static void contact_over(struct adaptive_task *c, int k)
 {
 	struct adaptive_link *l = &c->scene.links[k];
@@ -74,13 +74,16 @@ static void contact_over(struct adaptive_task *c, int k)
 		l->time = l->counted_time;
 }
 
-/* Velocities jump; where the hops that follow are over in next to no time, bodies stay together.
+/* A rigid impact: velocities jump.  If the remaining bounces take less than HOPS_END sample intervals, the bodies stay in
+ * contact.
  *
- *   v_1 -= J, v_2 += r J,  J = (1 + e) q/(1 + r)       hops that are left: 2 e q/(a (1 - e)), a their relative acceleration
+ *   v_1 -= J, v_2 += r J,  J = (1 + e) q/(1 + r)       duration of the remaining bounces: 2 e q/(a (1 - e))
+ *
+ * with q the approach speed, r the mass ratio and a the overlap acceleration without contact force.
  */
 static void contact_impact(struct adaptive_task *c, int k)
 {
-	static const double HOPS_END = 1e-12; // of a sample
+	static const double HOPS_END = 1e-12; // of a sample interval
 	struct adaptive_scene *s = &c->scene;
 	struct adaptive_link *l = &s->links[k];
 	double *m = l->measures, *p = &c->y[overlap_state(s, k)];
@@ -144,7 +147,7 @@ static void story_transition(struct adaptive_task *c, int i, enum pound_edge edg
 static void event_pass(struct adaptive_task *c, const struct guard *g)
 {
 	struct adaptive_link *l = g->of < c->scene.n_links ? &c->scene.links[g->of] : NULL;
-	// bodies that are pressed to rest turn by every rounding: turns count where a branch of a law ends with them
+	// bodies in sustained contact reverse with every rounding error, so only reversals that end a branch count
 	c->events += g->kind >= TURNS || pound_adaptive_turn_ends(c, g);
 	if (g->kind == CONTACT)
 		contact_transition(c, g->of);
@@ -173,7 +176,7 @@ static size_t states_bytes(const struct adaptive_task *c)
 	return sizeof(double) * (size_t)c->scene.n_states;
 }
 
-/* The state at t, from that at the start of a step. */
+/* Integrates from the start of a step to t; false: the stepper failed. */
 static bool state_at(struct adaptive_task *c, double t, double *y)
 {
 	double now = c->t;
@@ -183,10 +186,11 @@ static bool state_at(struct adaptive_task *c, double t, double *y)
 	return gsl_odeiv2_driver_apply(c->explicit, &now, t, y) == GSL_SUCCESS;
 }
 
-/* Moves the end of a step to where a guard has just come above 0: false position, each third time the middle.
+/* Moves the end of a step to the sign change of a guard: false position (Illinois), with bisection in every third round.
  *
- * Given    g         guard, not above 0 at the start
- * Returns  t, y      -, (n_states)   the end, guard above 0 there
+ * Given    g         -               guard, at most 0 at the start of the step
+ *          t, y      -, (n_states)   end of the step, where the guard is above 0
+ * Returns  t, y      -, (n_states)   the new end, where the guard is just above 0
  *          value     -               false: the stepper failed
  */
 static bool locate(struct adaptive_task *c, const struct guard *g, double *t, double *y)
@@ -203,7 +207,7 @@ static bool locate(struct adaptive_task *c, const struct guard *g, double *t, do
 		if (!state_at(c, next, c->middle))
 			return false;
 		double value = pound_adaptive_guard(c, g, next, c->middle);
-		// of an end that stays, half the value, so that the other one moves
+		// the value at an end that is kept twice is halved, so that the other end moves, too
 		if (value > 0) {
 			*t = next, g_high = value;
 			memcpy(y, c->middle, states_bytes(c));
@@ -218,7 +222,7 @@ static bool locate(struct adaptive_task *c, const struct guard *g, double *t, do
 	return true;
 }
 
-/* The first guard that is above 0 already, NULL: none. */
+/* The first guard that is above 0 now; NULL: none. */
 static const struct guard *crossed(const struct adaptive_task *c)
 {
 	int j = 0;
@@ -227,10 +231,11 @@ static const struct guard *crossed(const struct adaptive_task *c)
 	return j < c->n_guards ? &c->guards[j] : NULL;
 }
 
-/* Ends a step where a rate that turns twice within it is at its farthest in between.
+/* Shortens a step within which a rate may reverse twice to the extreme of the rate between the reversals.
  *
- * Given    t, y   end of the step
- * Returns  t, y   the same, or an earlier end, one above 0 there;  value: false: the stepper failed
+ * Given    t, y   -, (n_states)   end of the step
+ * Returns  t, y   -, (n_states)   the same, or an earlier end at which the guard of a reversal is above 0
+ *          value  -               false: the stepper failed
  */
 static bool turns_find(struct adaptive_task *c, double *t, double *y)
 {
@@ -238,7 +243,7 @@ static bool turns_find(struct adaptive_task *c, double *t, double *y)
 	pound_adaptive_derivative(*t, y, c->at_end, &c->scene);
 	for (int j = 0; j < c->n_turns; j++) {
 		const struct guard *of = &c->guards[j];
-		// contact ends with its force, which has a guard of its own, or with an overlap that the steps then resolve
+		// a contact ends at zero force, which has a separate guard, or at zero overlap, which the steps resolve
 		if (of->way == 0 || (of->kind == TURN_OVERLAP && c->scene.links[of->of].touching))
 			continue;
 		const struct rate start = pound_adaptive_rate(c, of, c->y, c->at_start),
@@ -260,7 +265,7 @@ static bool turns_find(struct adaptive_task *c, double *t, double *y)
 	return true;
 }
 
-/* Takes note of the floors where a step ends; false: one of them is nowhere. */
+/* Updates the largest drifts and displacements at the end of a step; false: a state is not finite. */
 static bool floors_note(struct adaptive_task *c)
 {
 	double u = 0;
@@ -277,7 +282,7 @@ static bool floors_note(struct adaptive_task *c)
 	return finite;
 }
 
-/* One step, cut at its first event; false: the stepper failed. */
+/* One step, shortened to its first event; false: the stepper failed or a state is not finite. */
 static bool task_step(struct adaptive_task *c)
 {
 	double *y = c->end, t = c->t, left = c->time_step - c->t;
@@ -341,7 +346,8 @@ static enum pound_status interval_run(struct adaptive_task *c, int sample)
 
 /* ---- from the start of a task to its end ---- */
 
-/* Sizes that components have at least where they matter: of the response to be expected. */
+/* Absolute scales of the error control: FLOOR times the expected size of each state, from the largest ground acceleration, the
+ * motion at the start and the highest frequency of a story. */
 static void scales_fill(struct adaptive_task *c)
 {
 	const struct adaptive_scene *s = &c->scene;
@@ -391,14 +397,14 @@ static void task_start(struct adaptive_task *c, struct pound_chain_result *resul
 			p[1] += l->weight[e] * s->floors[l->floor[e]].v;
 		}
 		p[0] -= l->gap;
-		// of powers the force has no rate where their overlap ends
+		// only linear forces have a guard of their rate: the rate of p^0.25 q is not finite at zero overlap
 		const bool line =
 		    l->meets && !l->law.tension && pound_contact_force(l->law.model) == POUND_FORCE_LINEAR;
 		l->release = line ? l->law.dashpot / l->law.stiffness : 0;
 	}
 }
 
-/* A contact still open at the end counts with what it has. */
+/* Completes the result; a contact that has not ended is recorded as it is. */
 static void task_end(struct adaptive_task *c)
 {
 	const struct adaptive_scene *s = &c->scene;
@@ -425,12 +431,12 @@ static void task_end(struct adaptive_task *c)
 	}
 }
 
-/* Follows a task whose scene is laid and which has all its memory. */
+/* Integrates a task whose memory is assigned and whose scene is filled. */
 static enum pound_status task_follow(struct adaptive_task *c, const struct pound_solver *solver,
                                      const atomic_bool *stop)
 {
 	const size_t n = (size_t)c->scene.n_states;
-	// at rest no velocity has a way yet, so the first steps are short and grow
+	// at rest no rate has a sign whose reversal could end a step, so the first steps are short
 	const double h = c->time_step * 0x1p-20;
 	c->system = (gsl_odeiv2_system){pound_adaptive_derivative, pound_adaptive_jacobian, n, &c->scene};
 	scales_fill(c);
@@ -454,12 +460,12 @@ static enum pound_status task_follow(struct adaptive_task *c, const struct pound
 }
 
 enum {
-	STATE_ROWS = 9, /* arrays of states: the task's, one more behind the task's last one, and the scene's */
+	STATE_ROWS = 9, /* arrays of states: 7 of the task, 1 of the scene, and a spare one behind `scale` */
 	ROW_FLOORS = POUND_CHAIN_FLOORS,
 	ROW_LINKS = POUND_CHAIN_LINKS,
 };
 
-/* Bytes of a task of so many floors and contacts. */
+/* Bytes of a task with these numbers of floors and contacts. */
 #define TASK_BYTES(floors, links)                                                          \
 	(sizeof(struct adaptive_floor) * (floors) + sizeof(struct adaptive_link) * (links) +   \
 	 sizeof(struct guard) * (4 * (floors) + 6 * (links)) + sizeof(double) * 2 * (floors) + \
@@ -468,7 +474,7 @@ enum {
 static_assert(TASK_BYTES(ROW_FLOORS, ROW_LINKS) <= POUND_CHAIN_SCRATCH_STRAIGHT,
               "a row fits into the smallest work space");
 
-/* Gives a task all its memory, of TASK_BYTES. */
+/* Assigns the memory of a task, TASK_BYTES, and clears it. */
 static void task_carve(struct adaptive_task *c, int n_floors, int n_links, char *memory)
 {
 	struct adaptive_scene *s = &c->scene;
@@ -485,24 +491,24 @@ static void task_carve(struct adaptive_task *c, int n_floors, int n_links, char 
 	c->guards = (void *)memory, memory += sizeof *c->guards * (4 * n + 6 * m);
 	s->still = (void *)memory, memory += sizeof(double) * n;
 	s->push = (void *)memory, memory += sizeof(double) * n;
-	for (int j = 0; j < STATE_ROWS - 1; j++) // the last one with a spare row behind it
+	for (int j = 0; j < STATE_ROWS - 1; j++) // the spare row follows the last one
 		*rows[j] = (void *)memory, memory += sizeof(double) * states;
 }
 
 /* The response of a row of buildings by adaptive steps.
  *
- * Given    solver    tolerance  -     of a step's error to the component and its change over the step
+ * Given    solver    tolerance  -     error of a step over a component plus its change in the step
  *          task      -          -     see chain.h; no rigid contacts
- * Returns  result    -          -     as of the exact solver, without accelerations, forces of contacts and energy: NAN
+ *          stop      -          -     checked between samples; NULL: never
+ * Returns  result    -          -     as from the exact solver; accelerations, largest forces, energy_residual: NAN
  * Status   POUND_TOLERANCE  the steps became too small or too many
  *          POUND_CHATTER    more events in one sample interval than allowed
- *          POUND_STOPPED    stop, which is looked at between samples, was set; NULL: never
- *          POUND_NOMEM      there was no memory for that, if the program has set GSL's error handler not to end it for that
- * Memory   scratch: POUND_CHAIN_SCRATCH_STRAIGHT bytes, 64-byte aligned; allocates GSL's work space, and frees it
+ *          POUND_STOPPED    stop was set
+ *          POUND_NOMEM      out of memory; GSL's default error handler ends the program instead
+ * Memory   scratch: POUND_CHAIN_SCRATCH_STRAIGHT bytes, 64-byte aligned; GSL's work space is allocated and freed
  *
- * Valid    Errors of a run are some ten to a hundred times the tolerance, until impacts have made them grow.  Stiff stretches go
- *          on with msbdf where there are at most STATES_STIFF states.  Steps follow from the C library's pow, so the last digits
- *          may be another machine's own.
+ * Valid    Errors of a run are 10 to 100 times the tolerance, until impacts amplify them.  msbdf is used only with at most
+ *          STATES_STIFF states.  Step sizes depend on the C library's pow, so the last digits may differ between machines.
  * Source   GSL Reference Manual 2.7, Ordinary Differential Equations; Prince and Dormand 1981, J. Comput. Appl. Math. 7,
  *          67-75 (rk8pd)
  * Test     unit_solver_rows
@@ -522,8 +528,8 @@ void pound_adaptive_row(const struct pound_solver *solver, const struct pound_ch
 
 /* The response of a pair by adaptive steps.
  *
- * Given    as pound_adaptive_row; a pair may have rigid contacts, and motion at the start
- * Returns  result    -          -     all 0 but the status where it failed
+ * Given    as pound_adaptive_row; a pair may have rigid contacts and motion at the start
+ * Returns  result    -          -     after a failure all 0 except the status
  * Status   as pound_adaptive_row
  * Memory   as pound_adaptive_row
  *

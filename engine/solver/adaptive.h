@@ -1,8 +1,8 @@
-/* adaptive.h - the inside of the adaptive solver: floors and contacts, and their equations.  For adaptive.c and
- * adaptive_motion.c.
+/* adaptive.h - internal interface of the adaptive solver: floors and contacts, their equations, and the events that end steps.
+ * For adaptive.c, adaptive_motion.c and adaptive_guards.c.
  *
- * State i of floor i is the drift of the story below it and the drift's rate; of contact k its overlap, the overlap's rate and the
- * impulse so far.  A pair is two floors that both stand on the ground. */
+ * States of floor i: drift of the story below it [m] and its rate [m/s].  States of contact k: overlap [m], its rate [m/s], and
+ * the impulse since the contact began.  A pair is two one-story buildings; its forces and impulses are per left mass. */
 #ifndef ADAPTIVE_H
 #define ADAPTIVE_H
 
@@ -13,71 +13,71 @@
 
 enum { POUND_FLOOR_STATES = 2, POUND_LINK_STATES = 3, POUND_LINK_ENDS = 4 };
 
-/* A floor and the story below it; what has no other unit is over its own mass. */
+/* A floor and the story below it; quantities are per mass of the floor unless stated otherwise. */
 struct adaptive_floor {
-	const struct pound_backbone *story; /* of forces, or of forces over masses */
-	double per_mass;                    /* that these are multiplied by */
-	double damping, mass_damping;       /* of the story's dashpot, and by mass [1/s] */
-	const double *modal;                /* of pound_chain_floor; NULL: none */
-	double above;                       /* mass of the floor above it over its own; 0: no floor is above it */
-	double inverse_mass;                /* of the unit of contact forces */
-	double drive;                       /* 1: rides on the ground motion, 0: stays where the ground is */
-	bool inner;                         /* there is a floor below it */
-	int base, storeys;                  /* first floor of its building, and how many that has */
+	const struct pound_backbone *story; /* as forces (rows) or forces per mass (pairs) */
+	double per_mass;                    /* acceleration per unit of the story's force */
+	double damping, mass_damping;       /* story dashpot, and damping proportional to mass [1/s] */
+	const double *modal;                /* as in pound_chain_floor; NULL: none */
+	double above;        /* mass of the floor above over the mass of this floor; 0: no floor above */
+	double inverse_mass; /* acceleration per unit of contact force */
+	double drive;        /* 1: driven by the ground acceleration, 0: fixed to the ground (a rigid wall) */
+	bool inner;          /* there is a floor below */
+	int base, storeys;   /* lowest floor of the building, and number of its floors */
 	struct pound_law_state at;
 	double u, v; /* drift and its rate at the start [m], [m/s] */
 };
 
 struct adaptive_link {
 	struct pound_contact_law law;
-	bool meets; /* false: the sides never touch */
+	bool meets; /* false: a pair without contact */
 	double gap;
 	int n_ends, floor[POUND_LINK_ENDS];
 	double weight[POUND_LINK_ENDS]; /* right side: < 0 */
-	double drive;                   /* of the overlap by the ground */
-	double inverse_mass;            /* over the effective mass */
-	double impulse_unit;            /* of an impulse that changes velocities by one */
+	double drive;                   /* overlap acceleration per ground acceleration */
+	double inverse_mass;            /* 1 over the effective mass of both sides */
+	double impulse_unit;            /* impulse per velocity change, for the error control */
 	struct pound_touch touch;       /* while touching: branch of the force */
 	bool touching, parted;          /* parted: overlapping without force */
-	bool held;                      /* touching, rigid: both velocities stay the same */
-	double release;                 /* C/K where contact ends at zero force [s], 0: it ends at zero overlap */
-	double counted_time;
-	double time;
+	bool held;                      /* rigid contact: both sides move together */
+	double release;      /* C/K if the contact ends at zero force [s]; 0: it ends at zero overlap */
+	double counted_time; /* of contacts that count [s] */
+	double time;         /* in contact [s] */
 	struct pound_counts_scale scale;
-	double touch_steps; /* of the current contact */
-	double *measures;
+	double touch_steps; /* steps of the current contact */
+	double *measures;   /* result  (POUND_LINK_MEASURES) */
 };
 
-/* A scene under its ground motion, in an interval between two samples. */
+/* A scene in an interval between two samples of the ground motion. */
 struct adaptive_scene {
 	int n, n_links, n_states;
 	struct adaptive_floor *floors;
 	struct adaptive_link *links;
-	double ground, slope; /* acceleration in the interval: ground + slope t */
-	double *still, *push; /* of floors: accelerations without ground and contact, and by contacts  (n) */
-	double *row;          /* (n_states) */
+	double ground, slope; /* ground acceleration in the interval: ground + slope t */
+	double *still, *push; /* accelerations of floors from stories and damping, and from contacts  (n) */
+	double *row;          /* work space for a row of the Jacobian  (n_states) */
 };
 
-/* What ends a step, of a story, floor or contact; turns first, for they make the others change their sign once at most. */
+/* Events that end a step.  Reversals come first: in a step without reversals all other guards change their sign at most once. */
 enum kind {
-	TURN,
-	TURN_OVERLAP,
-	TURN_FORCE,
-	TURN_FLOOR,
+	TURN,         /* the drift rate of a story changes sign */
+	TURN_OVERLAP, /* the overlap rate of a contact changes sign */
+	TURN_FORCE,   /* the rate of a contact force changes sign */
+	TURN_FLOOR,   /* the velocity of a floor changes sign */
 	TURNS,
-	LOW = TURNS,
-	HIGH,
-	CONTACT,
-	CLEARS,
-	TOUCH_LOW,
-	TOUCH_HIGH,
+	LOW = TURNS, /* the drift of a story leaves its branch downwards */
+	HIGH,        /* ... upwards */
+	CONTACT,     /* a contact begins or ends */
+	CLEARS,      /* an overlap without force ends */
+	TOUCH_LOW,   /* the overlap of a contact leaves the branch of the force downwards */
+	TOUCH_HIGH,  /* ... upwards */
 	KINDS
 };
 
 struct guard {
 	enum kind kind;
-	int of;     /* index of its story, floor or contact */
-	double way; /* of a turn: sign of the rate when a step begins; 0: it may turn */
+	int of;     /* index of the story, floor or contact */
+	double way; /* of a reversal: sign of the rate when a step begins; 0: the reversal is no event */
 };
 
 struct adaptive_task {
@@ -87,19 +87,19 @@ struct adaptive_task {
 	double time_step;
 	enum pound_status status;
 	double *floor_measures;
-	bool many; /* modes: a turn ends a step only where it may matter */
+	bool many; /* a row, with many modes: a reversal ends a step only if pound_adaptive_turn_matters */
 	int n_guards, n_turns;
-	struct guard *guards;                                          /* (n_guards) */
-	double start, t;                                               /* of the interval; since then [s] */
+	struct guard *guards; /* (n_guards) */
+	double start, t;      /* start of the interval; time since then [s] */
 	double *y, *end, *middle, *turned, *at_start, *at_end, *scale; /* (n_states) */
 	gsl_odeiv2_system system;
 	gsl_odeiv2_driver *explicit, *implicit; /* implicit NULL: too many states */
-	int steps;                              /* since the interval began, or the last event */
-	int events;                             /* since the interval began, without turns that change nothing */
+	int steps;                              /* since the start of the interval or the last event */
+	int events; /* since the start of the interval, without reversals that end no branch */
 };
 
-/* What a guard of a turn looks at, the rate of a drift, of a displacement, of the overlap or of the contact's force per stiffness,
- * and how fast that changes. */
+/* The rate whose reversal a guard detects (of a drift, displacement, overlap, or contact force over stiffness), and the time
+ * derivative of that rate. */
 struct rate {
 	double value, change;
 };

@@ -1,4 +1,5 @@
-/* adaptive_guards.c - what ends a step of the adaptive solver: turns of rates, edges of branches, and contacts that begin or end. */
+/* adaptive_guards.c - events that end a step of the adaptive solver: reversals of rates, ends of branches, and contacts that
+ * begin or end. */
 #include "engine/solver/adaptive.h"
 
 #include <float.h>
@@ -20,16 +21,16 @@ struct rate pound_adaptive_rate(const struct adaptive_task *c, const struct guar
 	                     dydt[q] + release * pound_adaptive_jerk(s, g->of, y, dydt)};
 }
 
-/* Rate of the force of a contact over its stiffness. */
+/* Rate of a contact force over its stiffness [m/s]. */
 static double force_rate(const struct adaptive_task *c, int k, double t, const double *y)
 {
-	double *dydt = c->scale + c->scene.n_states; // a spare row
+	double *dydt = c->scale + c->scene.n_states; // the spare row behind `scale`
 	pound_adaptive_derivative(t, y, dydt, (void *)&c->scene);
 	const int q = overlap_state(&c->scene, k) + 1;
 	return y[q] + c->scene.links[k].release * dydt[q];
 }
 
-/* What the force of a contact is above 0 with. */
+/* A value with the sign of a contact force; of a rigid contact the acceleration that presses its sides together. */
 static double force_sign(const struct adaptive_task *c, int k, double t, const double *y)
 {
 	const struct adaptive_link *l = &c->scene.links[k];
@@ -41,7 +42,7 @@ static double force_sign(const struct adaptive_task *c, int k, double t, const d
 	return p + l->release * q; // per stiffness
 }
 
-/* A guard above 0 is an event that has come to pass. */
+/* Value of a guard: above 0 once its event has happened. */
 double pound_adaptive_guard(const struct adaptive_task *c, const struct guard *g, double t, const double *y)
 {
 	const struct adaptive_scene *s = &c->scene;
@@ -82,7 +83,7 @@ static double sign(double x)
 	return (x > 0) - (x < 0);
 }
 
-/* The way of a turn's rate: the way that it goes now, or the one that a branch ends against. */
+/* Sign of the rate before its reversal: the direction of the branch if it has one, else the present sign; 0: no event. */
 static double way_of(const struct adaptive_task *c, const struct guard *g)
 {
 	const struct adaptive_scene *s = &c->scene;
@@ -99,7 +100,7 @@ static double way_of(const struct adaptive_task *c, const struct guard *g)
 		       : direction != 0     ? direction
 		                            : sign(c->y[overlap_state(s, g->of) + 1]);
 	}
-	// a contact ends with its force, or with the overlap
+	// TURN_FORCE: only a contact that ends at zero force needs it
 	const bool forced = l->release > 0 && (l->touching || l->parted);
 	return forced ? sign(force_rate(c, g->of, c->t, c->y)) : 0;
 }
@@ -110,7 +111,7 @@ void pound_adaptive_ways(struct adaptive_task *c)
 		c->guards[j].way = way_of(c, &c->guards[j]);
 }
 
-/* Whether a turn ends a branch of a law or of a contact. */
+/* Whether a reversal ends a branch of a law or of a contact force. */
 bool pound_adaptive_turn_ends(const struct adaptive_task *c, const struct guard *g)
 {
 	if (g->kind == TURN)
@@ -121,30 +122,30 @@ bool pound_adaptive_turn_ends(const struct adaptive_task *c, const struct guard 
 	return l->touching && l->touch.on.direction != 0;
 }
 
-/* Where in a step the cubic through both ends of a guard is highest, if that is inside and likely above 0.
+/* The interior maximum of the cubic Hermite interpolant of a guard over a step.
  *
- * Given    g, d   guard and its rate times the step, at both ends; neither g is above 0
- * Returns  value  share of the step; 0: it is highest at an end, or likely below 0
+ * Given    g, d   guard, and its rate times the step, at both ends; g <= 0
+ * Returns  value  fraction of the step; 0: there is no interior maximum, or its estimate plus a margin is not above 0
  */
 double pound_adaptive_hump(const double g[2], const double d[2])
 {
 	if (!(d[0] > 0 && d[1] < 0))
 		return 0;
 	const double rise = g[1] - g[0], b = 3 * rise - 2 * d[0] - d[1], a = d[0] + d[1] - 2 * rise;
-	// the root between 0 and 1 of the cubic's rate, d0 + 2 b s + 3 a s^2
+	// the root in (0, 1) of the cubic's derivative d0 + 2 b s + 3 a s^2
 	const double s = d[0] / (sqrt(b * b - 3 * a * d[0]) - b);
 	const double top = g[0] + s * (d[0] + s * (b + s * a)), height = top - fmax(g[0], g[1]);
-	// the cubic errs by a part of the height
+	// margin for the interpolation error: a quarter of the height
 	return top + 0.25 * height > 0 ? s : 0;
 }
 
-/* The most that a state may be between the ends of a step, with its rate. */
+/* Estimated bound of |x| over a step of h, from values and rates at both ends. */
 static double reach(double x0, double x1, double v0, double v1, double h)
 {
 	return fmax(fabs(x0), fabs(x1)) + h * fmax(fabs(v0), fabs(v1));
 }
 
-/* The displacement of a floor. */
+/* Displacement of a floor relative to the ground [m]. */
 static double displacement(const struct adaptive_task *c, int i, const double *y)
 {
 	double u = 0;
@@ -153,7 +154,7 @@ static double displacement(const struct adaptive_task *c, int i, const double *y
 	return u;
 }
 
-/* Whether a turn in a step that ends at y may be a largest value, or hide an edge or a contact. */
+/* Whether a reversal in a step of h that ends at y may be a new largest value, or may hide the end of a branch or a contact. */
 bool pound_adaptive_turn_matters(const struct adaptive_task *c, const struct guard *g, double h,
                                  const double *y)
 {
@@ -181,7 +182,7 @@ void pound_adaptive_guards_lay(struct adaptive_task *c, unsigned asked)
 	for (enum kind kind = TURN; kind < KINDS; kind++) {
 		const bool of_links = kind == TURN_OVERLAP || kind == TURN_FORCE || kind == CONTACT || kind >= CLEARS;
 		for (int i = 0; i < (of_links ? s->n_links : s->n); i++)
-			// a first storey's drift is its floor's displacement
+			// the drift of a first story is the displacement of its floor
 			if (kind != TURN_FLOOR || (asked & POUND_CHAIN_DISPLACEMENTS && s->floors[i].inner))
 				c->guards[c->n_guards++] = (struct guard){.kind = kind, .of = i};
 		if (kind == TURNS - 1)

@@ -1,5 +1,5 @@
-/* adaptive_motion.c - the equations of the adaptive solver: floors, stories and contacts on their branches, followed beyond the
- * edges of these. */
+/* adaptive_motion.c - the equations of motion of the adaptive solver: floors, stories and contacts on their present branches,
+ * extended beyond the ends of the branches. */
 #include "engine/solver/adaptive.h"
 
 #include <gsl/gsl_errno.h>
@@ -7,7 +7,7 @@
 
 /* ---- scenes ---- */
 
-/* Joins a side of a contact to a floor; of a side the weights add up to 1, or what is left is the ground's. */
+/* Adds a floor to a contact.  The weights of the floors of a side add up to 1 less the weight of the ground. */
 static void link_join(struct adaptive_scene *s, struct adaptive_link *l, int floor, double weight)
 {
 	l->floor[l->n_ends] = floor;
@@ -15,9 +15,9 @@ static void link_join(struct adaptive_scene *s, struct adaptive_link *l, int flo
 	l->inverse_mass += weight * weight * s->floors[floor].inverse_mass;
 }
 
-/* Takes a row of buildings at rest.
+/* Fills a scene with a row of buildings at rest.
  *
- * Given    s   its arrays are there, all 0
+ * Given    s   with its arrays, all 0
  */
 void pound_adaptive_lay_row(struct adaptive_scene *s, const struct pound_chain_task *task)
 {
@@ -57,9 +57,9 @@ void pound_adaptive_lay_row(struct adaptive_scene *s, const struct pound_chain_t
 	}
 }
 
-/* Takes a pair; forces are over the left mass.
+/* Fills a scene with a pair; contact forces are per left mass.
  *
- * Given    s   its arrays are there, all 0
+ * Given    s   with its arrays, all 0
  */
 void pound_adaptive_lay_pair(struct adaptive_scene *s, const struct pound_task *task)
 {
@@ -86,13 +86,13 @@ void pound_adaptive_lay_pair(struct adaptive_scene *s, const struct pound_task *
 
 /* ---- equations ---- */
 
-/* Acceleration of a floor by the story below it [m/s2]. */
+/* Acceleration of a floor from the story below it [m/s2]. */
 static double own_acceleration(const struct adaptive_floor *f, double d, double rate)
 {
 	return -f->damping * rate - f->per_mass * f->at.branch.stiffness * d - f->per_mass * f->at.branch.offset;
 }
 
-/* Velocity of a floor relative to the ground: the rates of the drifts below it. */
+/* Velocity of a floor relative to the ground: the sum of the drift rates below it [m/s]. */
 double pound_adaptive_velocity(const struct adaptive_scene *s, int i, const double *y)
 {
 	double v = 0;
@@ -101,7 +101,7 @@ double pound_adaptive_velocity(const struct adaptive_scene *s, int i, const doub
 	return v;
 }
 
-/* Accelerations of floors without ground and contact. */
+/* Fills `still`: accelerations of floors from stories and damping, without ground motion and contacts [m/s2]. */
 static void still_fill(const struct adaptive_scene *s, const double *y)
 {
 	double below = 0; // velocity
@@ -119,9 +119,10 @@ static void still_fill(const struct adaptive_scene *s, const double *y)
 	}
 }
 
-/* Relative acceleration of the sides of an open contact [m/s2], where the floors' accelerations are known.
+/* Overlap acceleration of a contact without contact forces [m/s2]; after still_fill.
  *
- * Not the difference of two accelerations: when the ground begins to move its rounding would decide who meets.
+ * The ground acceleration enters once, by `drive`: in a difference of two floor accelerations it would cancel only to rounding
+ * errors, which would decide which bodies meet when the ground begins to move.
  */
 static double apart_of(const struct adaptive_scene *s, const struct adaptive_link *l, double t)
 {
@@ -132,13 +133,14 @@ static double apart_of(const struct adaptive_scene *s, const struct adaptive_lin
 	return l->drive * a + own;
 }
 
+/* Overlap acceleration of a contact without contact forces [m/s2]; > 0: its sides are pressed together. */
 double pound_adaptive_apart(const struct adaptive_scene *s, int k, double t, const double *y)
 {
 	still_fill(s, y);
 	return apart_of(s, &s->links[k], t);
 }
 
-/* Force of a contact; a rigid one holds its sides together. */
+/* Force of a contact; of a rigid one the force that keeps the overlap constant.  After still_fill. */
 static double force_of(const struct adaptive_scene *s, int k, double t, const double *y)
 {
 	const struct adaptive_link *l = &s->links[k];
@@ -148,7 +150,7 @@ static double force_of(const struct adaptive_scene *s, int k, double t, const do
 	return l->touching ? pound_contact_force_on(&l->touch.on, p[0], p[1]) : 0;
 }
 
-/* What the other contacts do to the relative acceleration of the sides of one [m/s2]. */
+/* Contribution of all other contacts to the overlap acceleration of a contact [m/s2]. */
 static double others_push(const struct adaptive_scene *s, const struct adaptive_link *l, double force)
 {
 	double sum = 0;
@@ -159,6 +161,7 @@ static double others_push(const struct adaptive_scene *s, const struct adaptive_
 	return sum;
 }
 
+/* The right-hand side for GSL: dydt of the states y at time t in the interval. */
 int pound_adaptive_derivative(double t, const double *y, double *dydt, void *of)
 {
 	const struct adaptive_scene *s = of;
@@ -189,7 +192,7 @@ int pound_adaptive_derivative(double t, const double *y, double *dydt, void *of)
 
 /* ---- gradients ---- */
 
-/* Adds so many times the gradient of the acceleration of a floor by a story. */
+/* Adds `times` the gradient of a floor's acceleration from the story below it. */
 static void story_gradient(const struct adaptive_scene *s, int i, double times, double *row)
 {
 	const struct adaptive_floor *f = &s->floors[i];
@@ -197,7 +200,7 @@ static void story_gradient(const struct adaptive_scene *s, int i, double times, 
 	row[rate_state(i)] += times * -f->damping;
 }
 
-/* Adds so many times the gradient of a floor's acceleration relative to the ground. */
+/* Adds `times` the gradient of a floor's acceleration relative to the ground. */
 static void floor_gradient(const struct adaptive_scene *s, int i, const double *y, double times, double *row)
 {
 	const struct adaptive_floor *f = &s->floors[i];
@@ -214,7 +217,7 @@ static void floor_gradient(const struct adaptive_scene *s, int i, const double *
 		for (int e = 0; e < l->n_ends && l->touching && !l->held; e++) {
 			if (l->floor[e] != i)
 				continue;
-			// of powers but for the growth of their dashpot with the overlap
+			// products and powers: without the derivative of the dashpot's coefficient with respect to the overlap
 			const struct pound_touch_line line = pound_contact_line(&l->touch.on, y[p]);
 			const double share = -l->weight[e] * f->inverse_mass;
 			row[p] += times * (share * line.slope);
@@ -223,7 +226,7 @@ static void floor_gradient(const struct adaptive_scene *s, int i, const double *
 	}
 }
 
-/* The gradient of the relative acceleration of the sides of a contact. */
+/* The gradient of the overlap acceleration of a contact. */
 static void overlap_gradient(const struct adaptive_scene *s, int k, const double *y, double *row)
 {
 	const struct adaptive_link *l = &s->links[k];
@@ -232,6 +235,7 @@ static void overlap_gradient(const struct adaptive_scene *s, int k, const double
 		floor_gradient(s, l->floor[e], y, l->weight[e], row);
 }
 
+/* The Jacobian of the right-hand side for GSL: dfdy (n_states x n_states), dfdt (n_states). */
 int pound_adaptive_jacobian(double t, const double *y, double *dfdy, double *dfdt, void *of)
 {
 	const struct adaptive_scene *s = of;
@@ -263,7 +267,7 @@ int pound_adaptive_jacobian(double t, const double *y, double *dfdy, double *dfd
 	return GSL_SUCCESS;
 }
 
-/* How fast the relative acceleration of the sides of a contact changes [m/s3]. */
+/* Time derivative of the overlap acceleration of a contact [m/s3]. */
 double pound_adaptive_jerk(const struct adaptive_scene *s, int k, const double *y, const double *dydt)
 {
 	double jerk = s->links[k].drive * s->slope;

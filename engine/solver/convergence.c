@@ -1,10 +1,11 @@
-/* convergence.c - solvers of every setting against the event solver, under the same signals.
+/* convergence.c - errors of the solvers at several settings, relative to the event solver under the same signals.
  *
- * 1. Trial 0 is the event solver, the reference; trial 1 the adaptive one at its tightest, a second opinion on it;
- *    then come the settings of each solver.  Each runs the whole study: yield displacements, too, are its own.
- * 2. Largest values are compared over the whole motion, where impacts may have made any error as large as the
- *    response; histories over the first seconds, where they have not yet.
- * 3. The observed order is the slope of the mean error of the histories between two settings that follow each other. */
+ * 1. Trial 0 is the event solver, the reference.  Trial 1 is the adaptive solver at its smallest tolerance, an independent check
+ *    of the reference.  Then come the settings of each solver.  Each trial runs the whole study, including any search for yield
+ *    displacements.
+ * 2. Largest values are compared over the whole motion, in which impacts may amplify errors to the size of the response;
+ *    displacement histories over the first seconds, before that.
+ * 3. The observed order is the slope of log mean history error over log setting between two successive settings. */
 #include "engine/solver/convergence.h"
 
 #include <float.h>
@@ -15,11 +16,11 @@
 #include "engine/solver/solver.h"
 
 static const double TIGHTEST =
-    1e-12; /* tolerance of the second opinion; below it are the roundings of rk8pd */
+    1e-12; /* tolerance of trial 1; with a smaller one rounding errors of rk8pd dominate */
 
 enum { REFERENCE, SECOND_OPINION, FIRST };
 
-/* Trials of a study, with the reference and the second opinion. */
+/* Number of trials of a study, including the reference and the check. */
 int pound_convergence_trials(const struct pound_study *study)
 {
 	int n = FIRST;
@@ -37,7 +38,7 @@ static struct pound_solver setting(const struct pound_study *study, int row, dou
 	return (struct pound_solver){.method = row, .tolerance = value, .step = NAN};
 }
 
-/* The solver of a trial, with the step that it takes; NAN: a setting that it does not have. */
+/* The solver of a trial and its setting, the step as it is taken; a setting that the solver does not have is NAN. */
 struct pound_solver pound_convergence_solver(const struct pound_study *study, int trial)
 {
 	if (trial == REFERENCE)
@@ -50,10 +51,11 @@ struct pound_solver pound_convergence_solver(const struct pound_study *study, in
 	return setting(study, row, study->convergence.settings[row].values[k]);
 }
 
-/* Samples of the ground motion at which displacements are compared, evenly over the first seconds; of a suite of records by the
- * longest time step, and within the shortest record.
+/* Samples of the ground motion at which displacements are compared: evenly spaced over the first seconds.  In a suite seconds
+ * are counted with the longest time step of the records, and the samples end with the shortest record.
  *
- * Returns  samples   (value)   rising, from 1
+ * Returns  samples   (value)   ascending, from 1 on
+ *          value     -         number of samples
  */
 int pound_convergence_times(const struct pound_study *study, int samples[static POUND_HISTORY])
 {
@@ -94,18 +96,19 @@ static struct pound_deviation error_of(const struct sum *sum)
 	return (struct pound_deviation){sum->total / sum->n, sum->largest};
 }
 
-/* Relative to the reference, where that is 0 to the value. */
+/* Error relative to the reference; if the reference is 0, relative to the value. */
 static double relative(double value, double reference)
 {
 	double of = reference != 0 ? fabs(reference) : fabs(value);
 	return value == reference ? 0 : fabs(value - reference) / of;
 }
 
+/* Largest difference of the displacements over the largest displacement of the reference; NAN: a run failed. */
 static double history_error(const struct pound_trial_run *run, const struct pound_trial_run *reference, int n)
 {
 	double apart = 0, largest = 0;
 	for (int k = 0; k < n; k++) {
-		// a NAN stays
+		// NAN if the run has failed: its displacements are NAN from then on
 		double d = fabs(run->history[k] - reference->history[k]);
 		apart = d <= apart ? apart : d;
 		largest = fmax(largest, fabs(reference->history[k]));
@@ -118,7 +121,7 @@ static double setting_of(const struct pound_solver *solver)
 	return pound_solver_takes_step(solver->method) ? solver->step : solver->tolerance;
 }
 
-/* Slope between two trials; NAN where an error or the ratio of settings says nothing. */
+/* Observed order between two trials; NAN: an error is 0 or missing, or the setting does not decrease. */
 static double order_between(const struct pound_trial *coarse, const struct pound_trial *fine)
 {
 	double ratio = setting_of(&coarse->solver) / setting_of(&fine->solver);
@@ -129,8 +132,8 @@ static double order_between(const struct pound_trial *coarse, const struct pound
 
 /* Errors of all trials.
  *
- * Given    runs      (n_trials x n_signals)
- * Returns  trials    (n_trials)
+ * Given    runs      (n_trials x n_signals)   trials in the order of pound_convergence_solver
+ * Returns  trials    (n_trials)               errors over all signals for which neither run failed
  * Test     unit_convergence
  */
 void pound_convergence_reduce(const struct pound_study *study, const struct pound_trial_run *runs,
@@ -161,10 +164,10 @@ void pound_convergence_reduce(const struct pound_study *study, const struct poun
 	}
 }
 
-/* Slope of log mean history error over log setting, by least squares over the settings of a solver.
+/* Observed order of a solver: slope of log mean history error over log setting, by least squares over its settings.
  *
- * Given    trials    (n_trials)   reduced
- * Returns  value     -            NAN: fewer than two settings have an error
+ * Given    trials    (n_trials)   from pound_convergence_reduce
+ * Returns  value     -            NAN: fewer than two settings have an error > 0
  *
  * Test     unit_convergence: without_contact_both_fixed_steps_are_of_second_order
  */

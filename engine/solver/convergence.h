@@ -1,16 +1,16 @@
-/* convergence.h - solvers beside the exact one: which are tried, what is kept of a run, and their errors. */
+/* convergence.h - trials of other solvers against the exact one: settings, values kept of a run, and errors. */
 #ifndef CONVERGENCE_H
 #define CONVERGENCE_H
 
 #include "engine/pound.h"
 
-enum { POUND_HISTORY = 32 }; /* times at which displacements are compared, at most */
+enum { POUND_HISTORY = 32 }; /* most times at which displacements are compared */
 
-/* What is kept of one signal of one trial: doubles and nothing else; NAN: failed, or the scene has none. */
+/* Values kept of one signal of one trial; contains only doubles.  NAN: the run failed, or the scene has no such value. */
 struct pound_trial_run {
-	// of the left body; of a row of the top of the left building, of its storeys, and of all contacts
-	double displacement, demand, impulse; /* the largest */
-	double cpu;                           /* of a run [s] */
+	// largest values of the left body; in a row: of the top and of the stories of the left building, and of all contacts
+	double displacement, demand, impulse;
+	double cpu;                    /* CPU time of the run [s] */
 	double history[POUND_HISTORY]; /* displacement of the left body, or of the left building's top [m] */
 };
 

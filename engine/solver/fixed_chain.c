@@ -1,12 +1,12 @@
-/* fixed_chain.c - Newmark's average acceleration and central differences for rows of buildings: fixed_step.c over n floors.
+/* fixed_chain.c - Newmark's average acceleration and central differences for rows of buildings: fixed_step.c for n floors.
  *
- * 1. Steps, laws and contacts are the same as in fixed_step.c: contacts are checked at the end of each step.
- * 2. What a step has to solve is symmetric, and stories and contacts join few floors each: floors are numbered storey by storey
- *    over all buildings, so that rows of the matrix are short (envelope.h).  It is decomposed again where a branch or a contact
+ * 1. Steps, laws and contacts are treated as in fixed_step.c: contacts are checked at the end of each step.
+ * 2. The matrix of a step is symmetric, and each story or contact couples few floors.  Floors are numbered story by story over
+ *    all buildings, so that rows of the matrix are short (envelope.h).  The matrix is decomposed again if a branch or a contact
  *    changes.
  *
- * Two oscillators stay in fixed_step.c, where the pair is solved in closed form in a quarter of the time.  One-storey rows agree
- * with it to rounding.
+ * Two oscillators use fixed_step.c, which solves the pair in closed form in a quarter of the time.  Rows of one-story buildings
+ * agree with it to rounding.
  */
 #include <assert.h>
 #include <float.h>
@@ -23,53 +23,53 @@ enum { FLOORS = POUND_CHAIN_FLOORS, LINKS = POUND_CHAIN_LINKS, ENDS = 4 };
 
 struct stepped_link {
 	const struct pound_link *link;
-	int n_ends;          /* floors that move */
-	int floor[ENDS];     /* ... */
+	int n_ends;          /* number of floors that the contact acts on, without the ground */
+	int floor[ENDS];     /* these floors */
 	double weight[ENDS]; /* right side: < 0 */
 	double inverse_mass; /* 1 over the effective mass [1/kg] */
 	struct pound_touch touch, next;
-	bool touching, touches; /* where the step begins and where it ends */
-	double stiff;           /* what the step's matrix has of it; 0: nothing */
-	double in_matrix;       /* ... and what the decomposed one has */
-	double looked_at;       /* ... and what the stability of the step was looked at with */
-	double still, rate;     /* force without change and without rate, and over the rate */
-	double p, q;            /* overlap and its rate where the step begins [m], [m/s] */
-	double change;  /* newmark: of the overlap in the step [m]; central difference: its rate at the end */
+	bool touching, touches; /* at the start and at the end of the step */
+	double stiff;           /* coefficient of the contact in the matrix of the step; 0: none */
+	double in_matrix;       /* ... in the matrix that is decomposed */
+	double looked_at;       /* ... at the last check of stability (central_look) */
+	double still, rate;     /* contact force at zero change and zero rate [N], and per rate [N s/m] */
+	double p, q; /* overlap and its rate at the start of the step (central_solve: p at its end) [m], [m/s] */
+	double change;  /* newmark: of the overlap in the step [m]; central difference: overlap rate at its end */
 	double force;   /* [N] */
 	double impulse; /* of the current contact [N s] */
-	double time, counted_time;
+	double time, counted_time; /* in contact; in contacts that count [s] */
 	struct pound_counts_scale scale;
-	double *measures;
+	double *measures; /* result  (POUND_LINK_MEASURES) */
 };
 
-/* What a matrix is made of: so many times masses, dashpots and springs; contacts have their `stiff`. */
+/* Factors of the mass, damping and stiffness matrices in the matrix of a step; contacts enter by `stiff`. */
 struct parts {
 	double mass, dashpot, spring;
 };
 
 struct stepped_chain {
 	const struct pound_chain_task *task;
-	double step; /* [s] */
-	double time; /* where the step ends [s] */
-	double ground;
+	double step;   /* [s] */
+	double time;   /* at the end of the step [s] */
+	double ground; /* ground acceleration at the end of the step [m/s2] */
 	int n, n_links;
 	double u[FLOORS], v[FLOORS];
 	double rate[FLOORS];         /* newmark: acceleration; central difference: velocity half a step later */
 	double acceleration[FLOORS]; /* relative to the ground */
-	double x[FLOORS], b[FLOORS];
-	double speed_max[FLOORS];
-	double spring[FLOORS]; /* of the decomposed matrix */
+	double x[FLOORS], b[FLOORS]; /* solution and right-hand side of a step */
+	double speed_max[FLOORS];    /* [m/s] */
+	double spring[FLOORS];       /* story stiffnesses in the decomposed matrix [N/m] */
 	struct pound_law_state at[FLOORS], next[FLOORS];
 	struct stepped_link link[LINKS];
-	double *measures;    /* of floors */
-	bool too_long;       /* the step, for what touches */
-	int storeys[FLOORS]; /* of the building whose first floor it is */
-	bool fresh;          /* the matrix has to be decomposed whatever changes */
+	double *measures;    /* result of floors  (n x POUND_FLOOR_MEASURES) */
+	bool too_long;       /* step above the stability limit */
+	int storeys[FLOORS]; /* [first floor of a building]: number of its floors */
+	bool fresh;          /* the matrix must be decomposed before the next solve */
 	int entries;
 	struct pound_envelope matrix;
-	int row[FLOORS]; /* of a floor in it */
+	int row[FLOORS]; /* row of each floor in the matrix */
 	int first[FLOORS], begin[FLOORS];
-	double solution[FLOORS]; /* by rows */
+	double solution[FLOORS]; /* in the order of the matrix rows */
 	double values[FLOORS * (FLOORS + 1) / 2];
 };
 
@@ -86,7 +86,7 @@ static int storeys_of(const struct pound_chain_task *task, int base)
 	return n;
 }
 
-/* Numbers floors storey by storey. */
+/* Numbers floors story by story over all buildings. */
 static void rows_number(struct stepped_chain *c)
 {
 	int row = 0;
@@ -98,13 +98,14 @@ static void rows_number(struct stepped_chain *c)
 		}
 }
 
+/* Extends the envelope by the entry of two floors. */
 static void couple(struct stepped_chain *c, int i, int j)
 {
 	const int upper = c->row[i] > c->row[j] ? c->row[i] : c->row[j], lower = c->row[i] + c->row[j] - upper;
 	c->first[upper] = lower < c->first[upper] ? lower : c->first[upper];
 }
 
-/* Lays the envelope of everything that may ever be in the matrix. */
+/* Determines the envelope of all entries that any step may need. */
 static void matrix_lay(struct stepped_chain *c)
 {
 	const struct pound_chain_task *task = c->task;
@@ -129,7 +130,7 @@ static void matrix_add(struct stepped_chain *c, int i, int j, double value)
 	pound_envelope_add(&c->matrix, c->row[i], c->row[j], value);
 }
 
-/* Dashpots of modes: the row of a floor, over velocities of floors. */
+/* Modal damping coefficient of a floor for the velocity of floor j of its building [N s/m]. */
 static double modal_entry(const struct pound_chain_floor *floor, int j, int storeys)
 {
 	return floor->modal[j] - (j + 1 < storeys ? floor->modal[j + 1] : 0);
@@ -162,7 +163,7 @@ static void matrix_fill(struct stepped_chain *c, const struct parts *parts)
 	}
 }
 
-/* Solves for what is in `b`, by floors; into x. */
+/* Solves the decomposed system with right-hand side b; solution in x, both in the order of floors. */
 static void matrix_solve(struct stepped_chain *c)
 {
 	for (int i = 0; i < c->n; i++)
@@ -172,7 +173,7 @@ static void matrix_solve(struct stepped_chain *c)
 		c->x[i] = c->solution[c->row[i]];
 }
 
-/* Decomposes the matrix of a step where it is not there already; false: it is not positive definite. */
+/* Decomposes the matrix of a step, unless it is the same as before; false: it is not positive definite. */
 static bool matrix_ready(struct stepped_chain *c, const struct parts *parts, const struct pound_law_state *at)
 {
 	bool same = !c->fresh;
@@ -196,6 +197,7 @@ static double drift(const struct stepped_chain *c, const double *of, int i)
 	return of[i] - (c->task->floors[i].base ? 0 : of[i - 1]);
 }
 
+/* The weighted sum over the floors of a contact: left side less right side. */
 static double link_sum(const struct stepped_link *l, const double *of)
 {
 	double sum = 0;
@@ -204,14 +206,14 @@ static double link_sum(const struct stepped_link *l, const double *of)
 	return sum;
 }
 
-/* Adds the force of a contact to what is pushed. */
+/* Adds a contact force to the forces on floors. */
 static void link_push(const struct stepped_link *l, double force, double *pushed)
 {
 	for (int k = 0; k < l->n_ends; k++)
 		pushed[l->floor[k]] -= l->weight[k] * force;
 }
 
-/* Adds a story's force to what is pulled: the floors above and below it. */
+/* Adds a story force to the forces on the floors above and below the story. */
 static void story_pull(const struct stepped_chain *c, int i, double force, double *pulled)
 {
 	pulled[i] -= force;
@@ -219,7 +221,7 @@ static void story_pull(const struct stepped_chain *c, int i, double force, doubl
 		pulled[i - 1] += force;
 }
 
-/* Adds the forces of springs on branches and of dashpots, each times a factor. */
+/* Adds the forces of springs at u on the given branches, and of dashpots at v times `dashpots`, to b. */
 static void stories_pull(struct stepped_chain *c, const struct pound_law_state *at, double dashpots,
                          const double *v)
 {
@@ -239,9 +241,9 @@ static void stories_pull(struct stepped_chain *c, const struct pound_law_state *
 	}
 }
 
-/* ---- what is kept ---- */
+/* ---- results ---- */
 
-/* What a side of a contact moves by: magnitudes, of which its velocity has the roundings. */
+/* Magnitudes of the terms that accelerate a side of a contact, whose rounding errors are in its velocity. */
 static struct pound_counts_body side_of(const struct stepped_chain *c, const struct stepped_link *l, int side)
 {
 	struct pound_counts_body b = {.ground = c->ground};
@@ -262,7 +264,7 @@ static struct pound_counts_body side_of(const struct stepped_chain *c, const str
 	return b;
 }
 
-/* A contact has ended, or the signal has in it. */
+/* Records a contact at its end or at the end of the signal; one that does not count (counts.h) adds no contact and no time. */
 static void contact_over(const struct stepped_chain *c, struct stepped_link *l)
 {
 	double *m = l->measures, reach = l->link->gap;
@@ -283,7 +285,7 @@ static void contact_over(const struct stepped_chain *c, struct stepped_link *l)
 		l->time = l->counted_time;
 }
 
-/* Takes note of the contacts where a step ends; the force between two such states is a straight line. */
+/* Updates the result of a contact at the end of a step; for impulses the force is linear within a step. */
 static void link_note(const struct stepped_chain *c, struct stepped_link *l, double force)
 {
 	double *m = l->measures;
@@ -308,7 +310,7 @@ static void keep_largest(double *largest, double value)
 		*largest = fabs(value);
 }
 
-/* Takes note of the floors where a step ends; false: one is faster than any that the ground motion can move. */
+/* Updates the results of floors at the end of a step; false: a velocity exceeds its limit (chain_start). */
 static bool floors_note(struct stepped_chain *c)
 {
 	bool slow = true;
@@ -317,14 +319,14 @@ static bool floors_note(struct stepped_chain *c)
 		keep_largest(&m[POUND_FLOOR_DRIFT_MAX], drift(c, c->u, i));
 		keep_largest(&m[POUND_FLOOR_DISPLACEMENT_MAX], c->u[i]);
 		keep_largest(&m[POUND_FLOOR_ACCELERATION_MAX], c->acceleration[i] + c->ground);
-		slow &= fabs(c->v[i]) <= c->speed_max[i]; // no number is not
+		slow &= fabs(c->v[i]) <= c->speed_max[i]; // false for NAN
 	}
 	return slow;
 }
 
 /* ---- Newmark ---- */
 
-/* Solves for displacements on the branches assumed; false: there is no solution. */
+/* Solves for the change of displacements on the assumed branches; false: the matrix is not positive definite. */
 static bool newmark_solve(struct stepped_chain *c)
 {
 	const double h = c->step;
@@ -348,7 +350,10 @@ static bool newmark_solve(struct stepped_chain *c)
 	return true;
 }
 
-/* The branches where a solution ends; false: they are not those assumed. */
+/* Updates the assumed branches and contacts from a solution; as_it_was: contacts stay as at the start of the step.
+ *
+ * Returns  value   whether nothing has changed
+ */
 static bool newmark_round(struct stepped_chain *c, bool as_it_was)
 {
 	bool converged = true;
@@ -376,7 +381,7 @@ static bool newmark_round(struct stepped_chain *c, bool as_it_was)
 	return converged;
 }
 
-/* One step of average acceleration, as for the pair (fixed_step.c); false: no equilibrium was found.
+/* One step of average acceleration, as for the pair (fixed_step.c); false: no solution, or the iteration has not converged.
  *
  *   (4/h^2 M + 2/h C + K) d = M (4/h v + a - a_g) + C v - r(u) - contacts,   v1 = 2 d/h - v,  a1 = 2 (v1 - v)/h - a
  */
@@ -413,9 +418,9 @@ static bool newmark_advance(struct stepped_chain *c)
 
 /* ---- central differences ---- */
 
-/* Whether the step is below 2/w of the highest frequency w of floors and what touches: 4/h^2 M - K is positive definite.
+/* Whether the step is below 2/w, w: highest angular frequency of the floors with the contacts that touch.
  *
- * Stories count as they are at the start, where they are stiffest.
+ * The condition is that 4/h^2 M - K is positive definite, with the initial stiffnesses of the stories, which are the largest.
  */
 static bool central_stable(struct stepped_chain *c)
 {
@@ -427,7 +432,7 @@ static bool central_stable(struct stepped_chain *c)
 	return pound_envelope_decompose(&c->matrix);
 }
 
-/* Looks at the step's length where contacts are stiffer than at the last look. */
+/* Checks the stability of the step if a contact is stiffer than at the last check. */
 static void central_look(struct stepped_chain *c)
 {
 	bool stiffer = false;
@@ -443,14 +448,17 @@ static void central_look(struct stepped_chain *c)
 	c->too_long |= !central_stable(c);
 }
 
-/* Velocities half a step later with the contacts that touch; false: a force that may not pull does, and its contact is over. */
+/* Solves for the velocities half a step later, with all contacts that touch.
+ *
+ * Returns  value   false: a force without tension would pull; that contact is released, and must be solved without it
+ */
 static bool central_solve(struct stepped_chain *c)
 {
 	const struct parts parts = {.mass = 1 / c->step, .dashpot = 0.5};
 	bool pushes = true;
 	for (int k = 0; k < c->n_links; k++)
 		c->link[k].stiff = c->link[k].touches ? c->link[k].rate / 2 : 0;
-	// masses and dashpots are positive, and contacts add to them
+	// masses and dashpots are positive and contacts add to them, so the matrix is positive definite but for overflow
 	if (!matrix_ready(c, &parts, c->at))
 		c->too_long = true;
 	for (int i = 0; i < c->n; i++)
@@ -499,7 +507,7 @@ static bool central_advance(struct stepped_chain *c)
 		l->p = p;
 	}
 	for (int left = c->n_links; !central_solve(c) && left > 0;)
-		left--; // each time fewer contacts are left
+		left--; // each round releases at least one contact
 	for (int i = 0; i < c->n; i++) {
 		c->v[i] = (c->rate[i] + c->x[i]) / 2;
 		c->acceleration[i] = (c->x[i] - c->rate[i]) / h;
@@ -533,9 +541,9 @@ static void link_start(const struct pound_chain_task *task, int k, double *measu
 		measures[j] = 0;
 }
 
-/* A row at rest, and the accelerations there.
+/* Fills the state of a row at rest, with the initial accelerations in `rate`.
  *
- * No floor is faster than the work of the ground motion lets it be: fixed_step.c has the formula. */
+ * Velocities are limited by the work of the ground motion: speed_limits in fixed_step.c has the formula. */
 static void chain_start(struct stepped_chain *c, const struct pound_chain_task *task,
                         struct pound_chain_result *result, int n_steps)
 {
@@ -626,9 +634,9 @@ static enum pound_status chain_run(struct stepped_chain *c, int n_steps, advance
  *
  * Given    solver    step      s       longest step
  *          task      -         -       see chain.h
- *          stop      -         -       looked at between samples; NULL: never
- * Returns  result    -         -       as of the exact solver; energy_residual NAN
- * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
+ *          stop      -         -       checked between samples; NULL: never
+ * Returns  result    -         -       as from the exact solver; energy_residual NAN
+ * Status   POUND_UNSTABLE  a step had no solution or did not converge, or a velocity exceeded its limit (chain_start)
  *          POUND_STOPPED   stop was set
  * Memory   scratch: POUND_CHAIN_SCRATCH_STRAIGHT bytes, 64-byte aligned
  *
@@ -643,12 +651,12 @@ void pound_fixed_newmark_row(const struct pound_solver *solver, const struct pou
 	chain_end(c, result, chain_run(c, n_steps, newmark_advance, stop));
 }
 
-/* The response of a row of buildings by central differences, the explicit method; dashpots are solved for.
+/* The response of a row of buildings by central differences; explicit in springs, implicit in dashpots.
  *
  * Given    as pound_fixed_newmark_row
  * Returns  as pound_fixed_newmark_row
- * Status   POUND_UNSTABLE  the step is above 2/w of the highest angular frequency w of the floors and of what touches, or
- *                          velocities grew beyond any the ground motion can give
+ * Status   POUND_UNSTABLE  the step exceeds 2/w, w: highest angular frequency of the floors with the contacts that touch; or
+ *                          a velocity exceeded its limit (chain_start)
  *          POUND_STOPPED   stop was set
  * Memory   as pound_fixed_newmark_row
  *

@@ -1,10 +1,10 @@
-/* fixed_step.c - two integrators with one step for all: Newmark's average acceleration and central differences.
+/* fixed_step.c - two integrators with a fixed step: Newmark's average acceleration and central differences.
  *
- * 1. A sample interval is cut into equal steps, as few as make them no longer than the step asked for.
- * 2. Laws and contact are looked at where a step ends: on the straight way from the displacement before to the one
- *    now, and by the sign of the overlap there.  No event is located.
- * 3. So the error falls with the square of the step while nothing switches, and with its first power where bodies
- *    touch or part: the force that the dashpot begins with comes up to a step late.
+ * 1. A sample interval is divided into the fewest equal steps that are not longer than the requested step.
+ * 2. Branches of laws are updated at the end of a step, for a monotonic change of displacement within the step; contact is
+ *    checked there by the sign of the overlap and, without tension, of the force.  No event is located.
+ * 3. The error decreases with the square of the step as long as no branch changes, and with its first power if bodies touch or
+ *    separate: the initial force of the dashpot acts up to one step late.
  *
  * Newmark 1959, J. Eng. Mech. Div. ASCE 85(3), 67-94; Chopra, Dynamics of Structures, ch. 5. */
 #include "engine/solver/fixed_step.h"
@@ -24,28 +24,28 @@ struct stepped_task {
 	double
 	    rate[POUND_OSCILLATORS];  /* newmark: acceleration; central difference: velocity half a step later */
 	struct pound_contact_law law; /* of the contact */
-	struct pound_touch touch;     /* while touching: its branch */
-	double force;                 /* of the contact per mass of the left body [m/s2] */
+	struct pound_touch touch;     /* while touching: branch of the contact force */
+	double force;                 /* contact force per left mass [m/s2] */
 	bool touching;
 	double start;        /* of the sample interval [s] */
-	int k;               /* step in it, from 1 */
-	double impulse;      /* of the current contact [m/s] */
+	int k;               /* number of the step in the interval, from 1 */
+	double impulse;      /* of the current contact, per left mass [m/s] */
 	double ground;       /* acceleration where the step ends [m/s2] */
 	double counted_time; /* of contacts that count [s] */
 	struct pound_counts_scale counts_scale;
 	double speed_max[POUND_OSCILLATORS]; /* [m/s] */
-	bool too_long[2];                    /* the step, for bodies apart and touching */
+	bool too_long[2]; /* step above the stability limit, for separated and for touching bodies */
 };
 
 /* ---- contact at the end of a step ---- */
 
-/* Share of the contact force per left mass that a body feels. */
+/* Factor from the contact force per left mass to the force on a body per its mass, positive to the left. */
 static double share(const struct pound_task *task, int i)
 {
 	return i == 0 ? 1 : -task->mass_ratio;
 }
 
-/* Solves the pair that a contact couples: a_0 x_0 + s (x_0 - x_1) = b_0, a_1 x_1 - r s (x_0 - x_1) = b_1. */
+/* Solves the two equations coupled by a contact: a_0 x_0 + s (x_0 - x_1) = b_0, a_1 x_1 - r s (x_0 - x_1) = b_1. */
 static void pair_solve(const double a[2], double s, double r, const double b[2], double x[2])
 {
 	double determinant = a[0] * a[1] + s * (a[1] + r * a[0]);
@@ -53,19 +53,19 @@ static void pair_solve(const double a[2], double s, double r, const double b[2],
 	x[1] = (b[1] * (a[0] + s) + r * s * b[0]) / determinant;
 }
 
-/* Largest growth of the contact's force with the overlap, over overlaps up to p, per left mass [1/s2]. */
+/* Largest tangent stiffness of the contact for overlaps up to p, per left mass [1/s2]. */
 static double touch_stiffness(const struct stepped_task *c, double p)
 {
 	const bool power = c->task->force == POUND_FORCE_POWER;
 	return c->law.stiffness * (power ? 1.5 * sqrt(p) : 1);
 }
 
-/* A contact has ended, or the signal has in it. */
+/* Records a contact at its end or at the end of the signal; one that does not count (counts.h) adds no contact and no time. */
 static void contact_over(struct stepped_task *c)
 {
 	const struct pound_task *task = c->task;
 	struct pound_task_result *r = c->result;
-	// of a power the force grows fastest with the overlap where that is as large as it may be
+	// upper bound of the overlap, where the force of a power law is stiffest
 	const double reach = fabs(c->u[0]) + fabs(c->u[1]) + task->gap;
 	const double stiff = (1 + task->mass_ratio) * touch_stiffness(c, reach);
 	struct pound_counts counts = {.time = c->start + c->k * c->step,
@@ -87,7 +87,7 @@ static void contact_over(struct stepped_task *c)
 		r->contact_time = c->counted_time;
 }
 
-/* Takes note of the state that a step ended in; force between two such states is a straight line. */
+/* Updates the result at the end of a step; for impulses the force is linear within a step. */
 static void task_note(struct stepped_task *c, double force, bool touching, double approach)
 {
 	struct pound_task_result *r = c->result;
@@ -110,13 +110,14 @@ static void task_note(struct stepped_task *c, double force, bool touching, doubl
 
 /* ---- Newmark ---- */
 
-/* One step of average acceleration; false: no equilibrium was found.
+/* One step of average acceleration; false: the iteration has not converged.
  *
  *   d = u1 - u,  v1 = 2 d/h - v,  a1 = 4 d/h^2 - 4 v/h - a,  a1 + c v1 + r(u + d) + share F(d) = -a_g
  *
- * r and F are straight on the branches assumed, so a round of Newton's method is one linear solution; powers are replaced by
- * their tangent.  Where bodies are apart if they touch and touch if they are apart, because the dashpot's force begins with a
- * jump, they stay as they were until the next step.
+ * On the assumed branches r and F are linear, so an iteration of Newton's method is one linear solve; nonlinear contact forces
+ * are replaced by their tangents.  The force of a dashpot begins with a jump, so it can happen that the solution with contact is
+ * separated and the solution without contact overlaps: then, after POUND_FIXED_ROUNDS iterations, the bodies stay in contact or
+ * separated as at the start of the step.
  */
 static bool newmark_advance(struct stepped_task *c, double ground)
 {
@@ -172,8 +173,8 @@ static bool newmark_advance(struct stepped_task *c, double ground)
 
 /* ---- central differences ---- */
 
-/* Square of the highest angular frequency of bodies on the first branches of their laws, the stiffest ones, with a contact of some
- * stiffness between them [1/s2]. */
+/* Square of the highest angular frequency of the bodies, on the first and stiffest branches of their laws, coupled by a contact
+ * stiffness per left mass [1/s2]. */
 static double stiffest(const struct pound_task *task, double contact)
 {
 	const double left = task->bodies[0].backbone.stiffness, right = task->bodies[1].backbone.stiffness;
@@ -228,9 +229,11 @@ static bool central_advance(struct stepped_task *c, double ground)
 
 /* ---- from the start of a task to its end ---- */
 
-/* Velocities that no response can have: of the bodies, by the work that the ground motion does on them.
+/* Velocities above which a response is unstable: POUND_FIXED_UNSTABLE times the bound from the work of the ground motion.
  *
- *   E' <= |a_g| sqrt(2 M E), so sqrt(2 E) <= sqrt(2 E_0) + sqrt(M) int |a_g| dt, with M all that rides on the ground
+ *   E' <= |a_g| sqrt(2 M E), so sqrt(2 E) <= sqrt(2 E_0) + sqrt(M) int |a_g| dt
+ *
+ * with E the energy and M the mass of all bodies that the ground motion drives.
  */
 static void speed_limits(struct stepped_task *c)
 {
@@ -248,7 +251,7 @@ static void speed_limits(struct stepped_task *c)
 		c->speed_max[i] = POUND_FIXED_UNSTABLE * (sqrt(energy / mass[i]) + sqrt(riding / mass[i]) * push);
 }
 
-/* The state at the start, and the accelerations there in `rate`. */
+/* Fills the initial state, with the initial accelerations in `rate`. */
 static void task_start(struct stepped_task *c, int n_steps)
 {
 	const struct pound_task *task = c->task;
@@ -276,14 +279,14 @@ static void task_start(struct stepped_task *c, int n_steps)
 	speed_limits(c);
 }
 
-/* Whole steps of a sample interval, none longer than asked; a step that fits to rounding fits. */
+/* Number of steps of a sample interval, none longer than the requested step, to rounding. */
 int pound_fixed_steps(double time_step, double step)
 {
 	double steps = time_step / step;
 	return (int)fmin(fmax(1, ceil(steps * (1 - 4 * DBL_EPSILON))), INT32_MAX);
 }
 
-/* The step that is taken where one is asked for [s]. */
+/* The step that is used for a requested step [s]. */
 double pound_fixed_step(double time_step, double step)
 {
 	return time_step / pound_fixed_steps(time_step, step);
@@ -302,7 +305,7 @@ static void task_run(struct stepped_task *c, int n_steps, advance *step, const a
 			c->k = k;
 			c->ground = from + rise * k;
 			bool converged = step(c, c->ground);
-			// written so that no number is within the limit
+			// NAN counts as above the limit
 			if (!converged || c->too_long[c->touching] ||
 			    !(fabs(c->v[0]) <= c->speed_max[0] && fabs(c->v[1]) <= c->speed_max[1]))
 				r->status = POUND_UNSTABLE;
@@ -328,12 +331,12 @@ static void task_run(struct stepped_task *c, int n_steps, advance *step, const a
  *
  * Given    solver    step      s       longest step
  *          task      -         -       see task.h
- *          stop      -         -       looked at between samples; NULL: never
- * Returns  result    -         -       all 0 but the status where it failed
- * Status   POUND_UNSTABLE  a step had no equilibrium, or velocities grew beyond any the ground motion can give
+ *          stop      -         -       checked between samples; NULL: never
+ * Returns  result    -         -       after a failure all 0 except the status
+ * Status   POUND_UNSTABLE  the iteration of a step did not converge, or a velocity exceeded its limit (speed_limits)
  *          POUND_STOPPED   stop was set
  *
- * Valid    Any step where nothing switches; a contact needs some 20 steps.
+ * Valid    Stable for any step as long as no branch changes; a contact needs about 20 steps.
  * Test     unit_fixed_step: the_error_of_free_vibration_falls_with_the_square_of_the_step
  */
 void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_task *task,
@@ -350,10 +353,10 @@ void pound_fixed_newmark(const struct pound_solver *solver, const struct pound_t
  *
  * Given    solver    step      s       longest step
  *          task      -         -       see task.h
- *          stop      -         -       looked at between samples; NULL: never
- * Returns  result    -         -       all 0 but the status where it failed
- * Status   POUND_UNSTABLE  the step is above 2/w of the highest angular frequency w, where bodies touched of the bodies in contact
- *                          pair, or velocities grew beyond any the ground motion can give
+ *          stop      -         -       checked between samples; NULL: never
+ * Returns  result    -         -       after a failure all 0 except the status
+ * Status   POUND_UNSTABLE  the step exceeds 2/w, w: highest angular frequency of the bodies, while they touch with the contact
+ *                          stiffness between them; or a velocity exceeded its limit (speed_limits)
  *          POUND_STOPPED   stop was set
  *
  * Test     unit_fixed_step: an_explicit_step_beyond_its_limit_ends_with_a_status
@@ -365,7 +368,8 @@ void pound_fixed_central(const struct pound_solver *solver, const struct pound_t
 	struct stepped_task c = {.task = task, .result = result};
 	int n_steps = pound_fixed_steps(task->time_step, solver->step);
 	task_start(&c, n_steps);
-	const bool power = task->force == POUND_FORCE_POWER; // as stiff as its overlap is large
+	// a power law's stiffness depends on the overlap: central_advance checks it
+	const bool power = task->force == POUND_FORCE_POWER;
 	for (int i = 0; i < 2; i++) {
 		c.rate[i] = c.v[i] + c.step / 2 * c.rate[i];
 		c.too_long[i] = c.step * sqrt(stiffest(task, i == 1 && !power ? c.law.stiffness : 0)) > 2;

@@ -1,4 +1,4 @@
-/* fixed_step.h - what the integrators of one step for all have in common: where laws and contacts are when a step ends. */
+/* fixed_step.h - common to the fixed-step integrators: branches of laws and contacts at the end of a step. */
 #ifndef FIXED_STEP_H
 #define FIXED_STEP_H
 
@@ -8,17 +8,17 @@
 #include "engine/scene/contact.h"
 #include "engine/scene/law.h"
 
-enum { POUND_FIXED_ROUNDS = 16 }; /* of a step's iteration; laws alone take two or three */
+enum { POUND_FIXED_ROUNDS = 16 }; /* Newton iterations of a step; without contact two or three are enough */
 
-/* Change of an overlap in a round, over the overlap, that ends the iteration of a power's force: Newton's rounds double the digits. */
+/* Relative change of an overlap that ends the iteration of a nonlinear force; each Newton iteration doubles the digits. */
 static const double POUND_FIXED_SETTLED = 1e-10;
 
-/* No response has a velocity above what the ground motion can give; one this many times larger is the integrator's. */
+/* A velocity that exceeds the bound from the work of the ground motion this many times is a numerical instability. */
 static const double POUND_FIXED_UNSTABLE = 10;
 
 int pound_fixed_steps(double time_step, double step);
 
-/* Takes a law along the straight way from one displacement to another. */
+/* Updates the branch of a law whose displacement changes monotonically, through every branch boundary on the way. */
 static inline void pound_fixed_follow(const struct pound_backbone *backbone, struct pound_law_state *at,
                                       double from, double to)
 {
@@ -33,6 +33,7 @@ static inline void pound_fixed_follow(const struct pound_backbone *backbone, str
 			return;
 }
 
+/* Spring force of a law on its branch. */
 static inline double pound_fixed_restoring(const struct pound_law_state *at, double u)
 {
 	return at->branch.stiffness * u + at->branch.offset;
@@ -48,10 +49,11 @@ static inline bool pound_fixed_same_touch(const struct pound_touch *a, const str
 	return a->branch == b->branch && a->on.offset == b->on.offset;
 }
 
-/* The branch of a contact where a step ends that led from one overlap to another.
+/* The branch of a contact at the end of a step.
  *
- * Given    was        its branch before, where it was touching
- *          rate       of the overlap before [m/s]
+ * Given    was, touching   branch at the start of the step; used only if the contact was touching
+ *          from, to   m    overlap at the start and the end of the step
+ *          rate       m/s  overlap rate at the start
  */
 static inline struct pound_touch pound_fixed_touch(const struct pound_contact_law *law,
                                                    const struct pound_touch *was, bool touching, double from,
@@ -67,18 +69,24 @@ static inline struct pound_touch pound_fixed_touch(const struct pound_contact_la
 	return touch;
 }
 
+/* Whether a contact acts at the end of a step: bodies overlap, and the force does not pull unless the law allows tension. */
 static inline bool pound_fixed_touches(const struct pound_contact_law *law, const struct pound_touch *touch,
                                        double overlap, double rate)
 {
 	return overlap > 0 && (law->tension || pound_contact_force_on(&touch->on, overlap, rate) > 0);
 }
 
-/* Newmark's force of a contact over the change d of its overlap p: still + slope d + rate q1 */
+/* Linearized contact force at the end of a step: still + slope d + rate q1, with d the change of the overlap in the step and q1
+ * the overlap rate at the end. */
 struct pound_fixed_force {
 	double still, slope, rate;
 };
 
-/* The line or the tangent, at an overlap p1, of the force of a branch. */
+/* Linearized force of a branch.
+ *
+ * Given    p    m   overlap at the start of the step
+ *          p1   m   overlap at which a nonlinear force is replaced by its tangent
+ */
 static inline struct pound_fixed_force pound_fixed_force_over(const struct pound_touch_branch *on, double p,
                                                               double p1)
 {

@@ -1,4 +1,4 @@
-/* solver.c - the ways to integrate a scene.  Adding one: its function and its row in solvers[]. */
+/* solver.c - the table of solvers.  To add a solver, add its function and a row to solvers[]. */
 #include "engine/solver/solver.h"
 
 #include "engine/exact/chain.h"
@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <string.h>
 
-// forms of contact force that have branches: all but velocities that jump
+// all forms of contact force except rigid impacts
 #define BRANCHES                                                                                  \
 	{                                                                                             \
 		[POUND_FORCE_LINEAR] = true, [POUND_FORCE_STRAIGHT] = true, [POUND_FORCE_PRODUCT] = true, \
@@ -31,14 +31,14 @@ static const struct solver {
 	            const atomic_bool *stop);
 	void (*run_row)(const struct pound_solver *, const struct pound_chain_task *, struct pound_chain_result *,
 	                void *scratch, const atomic_bool *stop);
-	bool tolerance, step; /* the settings it takes */
-	unsigned rows;        /* what it gives of rows of buildings: of enum pound_chain_asked */
-	bool observed;        /* what observes a motion can follow it */
+	bool tolerance, step; /* settings that the solver reads */
+	unsigned rows;        /* results for rows of buildings: bits of enum pound_chain_asked */
+	bool observed;        /* calls the observers of a task */
 	bool portable;        /* the same bytes on every processor */
-	// forms of contact force that it can integrate, of pairs and of rows; it takes every law, as branches
+	// forms of contact force that the solver can integrate, for pairs and for rows; every solver takes every law
 	bool forces[POUND_FORCES], row_forces[POUND_FORCES];
 } solvers[] = {
-    // many tasks at once
+    // run NULL: exact_run and pound_chain_lanes, which take many tasks at once
     [POUND_SOLVER_EVENT] = {"event", "exact to rounding: from event to event, by maps and power series", NULL,
                             NULL, .tolerance = true, .rows = MARCHED | POUND_CHAIN_ENERGY, .observed = true,
                             .portable = true, .forces = EVERY, .row_forces = EVERY},
@@ -72,21 +72,21 @@ const char *pound_solver_text(int row)
 	return solver_at(row)->text;
 }
 
-/* Whether a solver can integrate a form of contact force, of two oscillators.
+/* Whether a solver can integrate a form of contact force between two oscillators.
  *
- * A check or an estimate that runs a solver on a study's scene asserts this: it may not run another model. */
+ * Callers that run another solver on the scene of a study, for a check or an estimate, assert this. */
 bool pound_solver_takes_force(int row, enum pound_force force)
 {
 	return solver_at(row)->forces[force];
 }
 
-/* The same of rows of buildings. */
+/* Whether a solver can integrate a form of contact force in rows of buildings. */
 bool pound_solver_takes_row_force(int row, enum pound_force force)
 {
 	return solver_at(row)->row_forces[force];
 }
 
-/* Whether a solver gives all that is asked of a row of buildings (enum pound_chain_asked). */
+/* Whether a solver gives all requested results of rows of buildings (bits of enum pound_chain_asked). */
 bool pound_solver_gives_of_rows(int row, unsigned asked)
 {
 	return (asked & ~solver_at(row)->rows) == 0;
@@ -97,7 +97,7 @@ bool pound_solver_is_observed(int row)
 	return solver_at(row)->observed;
 }
 
-/* Whether its bytes depend on the study alone; GSL's solvers call functions that the C library chooses by processor. */
+/* Whether result bytes are the same on every processor; GSL's steppers call functions of the C library that are not. */
 bool pound_solver_is_portable(int row)
 {
 	return solver_at(row)->portable;
@@ -113,7 +113,7 @@ bool pound_solver_takes_step(int row)
 	return solver_at(row)->step;
 }
 
-/* The contact of a task: a linear one is Kelvin-Voigt's, which is row 0. */
+/* The contact law of a task; a linear one is Kelvin-Voigt, model 0. */
 struct pound_contact_law pound_task_law(const struct pound_task *task)
 {
 	if (task->force != POUND_FORCE_LINEAR)
@@ -124,10 +124,10 @@ struct pound_contact_law pound_task_law(const struct pound_task *task)
 
 /* ---- the exact solver ---- */
 
-/* Two oscillators as a chain of two one-story buildings, or of one beside a wall, over the left mass.
+/* Two oscillators as a chain of two one-story buildings, or of one building beside a wall; masses are over the left mass.
  *
  * Given    task   at rest at the start
- * Returns  chain  its task points into it
+ * Returns  chain  must not be moved: chain->task points into it
  */
 void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *chain)
 {
@@ -159,9 +159,9 @@ void pound_pair_chain(const struct pound_task *task, struct pound_pair_chain *ch
 	                                        .links = &chain->link};
 }
 
-/* The result of a pair from measures of its floors; a wall may have none.
+/* The result of a pair from the result of a chain.
  *
- * Given    rows     of n_floors and one contact
+ * Given    rows     n_floors floors and one contact; 1 floor: the right body is a wall, which does not move
  */
 void pound_pair_result(const struct pound_task *task, const struct pound_chain_result *rows, int n_floors,
                        struct pound_task_result *result)
@@ -185,10 +185,7 @@ void pound_pair_result(const struct pound_task *task, const struct pound_chain_r
 	}
 }
 
-/* Runs a pair as a chain.
- *
- * Returns  result   with the members of the march of pairs
- */
+/* Runs a pair as a chain and converts the result to the result of a pair. */
 static void chain_run(const struct pound_task *task, struct pound_task_result *result, void *scratch,
                       const atomic_bool *stop)
 {
@@ -205,7 +202,7 @@ bool pound_runs_as_chain(const struct pound_task *task)
 	return task->contact && task->force != POUND_FORCE_LINEAR;
 }
 
-/* Runs tasks from event to event: pairs many at once, in the order they are in, all others as chains. */
+/* Runs tasks with the exact solver: consecutive pairs together in lanes, all other tasks as chains. */
 static void exact_run(const struct pound_task *tasks, struct pound_task_result *results, int n, void *scratch,
                       const atomic_bool *stop)
 {
@@ -224,12 +221,12 @@ static_assert((int)POUND_CHAIN_SCRATCH <= (int)POUND_EXACT_SCRATCH,
 
 /* Runs tasks, with the method and the setting of a solver.
  *
- * Given    solver    -       -       row of the solvers, and the setting it takes
+ * Given    solver    -       -       row of the solvers, and its setting
  *          tasks     (n)     -       see task.h
- *          stop      -       -       looked at throughout; NULL: never
- * Returns  results   (n)     -       each with a status of its own
- * Status   POUND_STOPPED  stop was set: the results are not to be used
- *          POUND_NOMEM    there was no memory for one of them, so too
+ *          stop      -       -       checked throughout; NULL: never
+ * Returns  results   (n)     -       each with its status
+ * Status   POUND_STOPPED  stop was set: the results must not be used
+ *          POUND_NOMEM    out of memory in one task: the results must not be used
  * Memory   scratch: POUND_EXACT_SCRATCH bytes, 64-byte aligned
  * Test     unit_fixed_step
  */
@@ -244,7 +241,7 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
 		exact_run(tasks, results, n, scratch, stop);
 	for (int j = 0; row->run && j < n && !pound_stopped(stop); j++) {
 		row->run(solver, &tasks[j], &results[j], stop);
-		results[j].energy_residual = NAN; // only the march keeps the balance
+		results[j].energy_residual = NAN; // only the exact solver computes the energy balance
 		if (results[j].status == POUND_NOMEM)
 			return POUND_NOMEM;
 	}
@@ -253,13 +250,13 @@ enum pound_status pound_solver_run(const struct pound_solver *solver, const stru
 
 /* Runs rows of buildings, with the method and the setting of a solver.
  *
- * Given    solver    -       -       row of the solvers, and the setting it takes
- *          tasks     (n)     -       see chain.h; what they ask for the solver gives
- *          stop      -       -       looked at throughout; NULL: never
- * Returns  results   (n)     -       each with a status of its own
- * Status   POUND_STOPPED  stop was set: the results are not to be used
- *          POUND_NOMEM    there was no memory for one of them, so too
- * Memory   scratch: pound_chain_scratch bytes of their contacts' forces, 64-byte aligned
+ * Given    solver    -       -       row of the solvers, and its setting
+ *          tasks     (n)     -       see chain.h; only results that the solver gives are requested
+ *          stop      -       -       checked throughout; NULL: never
+ * Returns  results   (n)     -       each with its status
+ * Status   POUND_STOPPED  stop was set: the results must not be used
+ *          POUND_NOMEM    out of memory in one task: the results must not be used
+ * Memory   scratch: the most bytes that pound_chain_scratch returns for the forms of contact force, 64-byte aligned
  * Test     unit_solver_rows
  */
 enum pound_status pound_solver_rows(const struct pound_solver *solver, const struct pound_chain_task *tasks,

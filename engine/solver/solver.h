@@ -1,6 +1,6 @@
-/* solver.h - the ways to integrate tasks, all with the same task and the same result.
+/* solver.h - the solvers: all take the same tasks and give the same results.
  *
- * Each solver is described in its own file; task.h has the exact one, which the others are compared with. */
+ * The head of each solver's file describes it; the exact solver is in engine/exact. */
 #ifndef SOLVER_H
 #define SOLVER_H
 
@@ -10,7 +10,7 @@
 #include "engine/exact/task.h"
 #include "engine/pound.h"
 
-/* rows of the exact one, and of the independent one that is as exact as its tolerance */
+/* rows of the exact solver and of the adaptive solver, an independent one */
 enum { POUND_SOLVER_EVENT = 0, POUND_SOLVER_ADAPTIVE = 3 };
 
 enum pound_status pound_solver_run(const struct pound_solver *solver, const struct pound_task *tasks,
@@ -23,9 +23,9 @@ enum pound_status pound_solver_rows(const struct pound_solver *solver, const str
 
 bool pound_solver_gives_of_rows(int row, unsigned asked);
 
-struct pound_contact_law pound_task_law(const struct pound_task *task); /* of its contact */
+struct pound_contact_law pound_task_law(const struct pound_task *task); /* of the contact */
 
-/* A pair as a chain, for the forms of contact force that the march of pairs does not have; it stays where it is. */
+/* A pair as a chain, for forms of contact force that the exact solver of pairs does not have; must not be moved. */
 struct pound_pair_chain {
 	struct pound_chain_task task;
 	struct pound_chain_floor floors[POUND_OSCILLATORS];
