@@ -185,7 +185,7 @@ static double g_15(const double *u)
 	return y;
 }
 
-/* Whether any of 16 inputs is beyond its limit: 1 or 0; 1 in 5 % of the samples. */
+/* Whether any of 16 inputs is beyond its limit: 1 or 0; 1 in 5 % of the samples.  1 minus it is a product. */
 static double any_of_16(const double *u)
 {
 	for (int j = 0; j < 16; j++)
