@@ -119,7 +119,7 @@ static double answering_s(pid_t pid)
 	assert_non_null(tasks);
 	for (struct dirent *task = readdir(tasks); task; task = readdir(tasks)) {
 		snprintf(path, sizeof path, "/proc/%d/task/%.16s/stat", (int)pid, task->d_name);
-		FILE *file = task->d_name[0] == '.' ? NULL : fopen(path, "r"); // task/../stat is the whole process
+		FILE *file = task->d_name[0] == '.' ? NULL : fopen(path, "r"); // task/../stat: whole process
 		long user, system, nice;
 		if (file && fgets(line, sizeof line, file) &&
 		    sscanf(strrchr(line, ')'),

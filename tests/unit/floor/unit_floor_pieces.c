@@ -14,8 +14,7 @@ struct followed {
 	struct pound_task_result result;
 	enum pound_status status; /* status of the pieces */
 	int pieces, maps, events, touching;
-	double time,
-	    gap; /* total of the steps; largest time between the end of a piece and the start of the next [s] */
+	double time, gap;       /* total of the steps; largest time between two pieces [s] */
 	double impulse, pushed; /* largest impulse of a contact, and impulse of the current one [m/s] */
 	double largest;         /* largest acceleration [m/s2] */
 	struct {

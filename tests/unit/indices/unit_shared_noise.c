@@ -41,7 +41,7 @@ static const struct model {
 	double noise;                /* variance of y given all inputs, on average */
 	double first[D];             /* V[E(Y|x)] / V(Y) */
 	double total[D];             /* E[V(Y|all but x)] / V(Y) */
-	double first_given_noise[D]; /* E_z V[E(Y|x, z)|z] / V(Y): the expectation of pick-freeze under shared noise */
+	double first_given_noise[D]; /* E_z V[E(Y|x, z)|z] / V(Y): pick-freeze under shared noise */
 	double total_given_noise[D]; /* E V(Y|all but x, z) / V(Y), likewise */
 } models[] = {
     {sum, 2, {.25, .25, 0, 0}, {.75, .75, .5, .5}, {.25, .25, 0, 0}, {.25, .25, 0, 0}},
@@ -96,8 +96,7 @@ static struct indices *indices_of(const struct model *model, struct noise noise,
 	                                        .random = !noise.elsewhere || noise.variance,
 	                                        .fresh_signals = noise.fresh,
 	                                        .quasi_random = noise.quasi_random,
-	                                        .n_resamples =
-	                                            8}; // few suffice: no test uses their intervals
+	                                        .n_resamples = 8}; // few suffice: no test uses their intervals
 	struct indices *result = calloc(1, sizeof *result);
 	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, &sampling));
 	for (int k = 0; k < POUND_N_INDICES; k++)

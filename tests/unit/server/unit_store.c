@@ -226,7 +226,7 @@ static void a_store_in_use_is_not_opened_by_another_name(void **state)
 	assert_null(store_open(link_of_link));
 	unlink(link_of_link);
 	unlink(name);
-	// nor by the first name, while there are two
+	// nor under the first name, while the file has two
 	assert_null(opened_by(link, name));
 	store_close(*state);
 	*state = NULL;
