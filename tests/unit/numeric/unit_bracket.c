@@ -90,8 +90,7 @@ static void a_jump_over_the_root_is_found_between_two_neighbours(void **state)
 		assert_true(jumps);
 		check_near(end, 1.0 / 3, 4 * DBL_EPSILON);
 		assert_true(
-		    n <
-		    3 * 60); // 60 halvings from 64 to a rounding error, each after at most two steps that do not halve
+		    n < 3 * 60); // 60 halvings from 64 to a rounding, each after at most two steps that do not halve
 	}
 }
 
