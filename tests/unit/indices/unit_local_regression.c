@@ -159,7 +159,7 @@ static struct performance performance_of(const struct function *f, struct functi
 static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **state)
 {
 	(void)state;
-	// measured over 100 designs; pick-freeze has 0.020 to 0.033, one bandwidth alone 0.006 to 0.010 and a bias at
+	// measured over 100 designs; pick-freeze has 0.020 to 0.033, one reach alone 0.006 to 0.010 and a bias at
 	// jumps
 	static const struct {
 		const char *name;
@@ -190,7 +190,7 @@ static void a_jump_within_the_range_leaves_no_bias_and_the_interval_holds(void *
 	                           .y = jumps,
 	                           .variance = variance,
 	                           .index = {0.25 / variance, 1.0 / 12.0 / variance, 0.0, 0.0225 / variance}};
-	// one bandwidth alone: a bias of 0.016, and a coverage of one third for the first input
+	// one reach alone: a bias of 0.016, and a coverage of one third for the first input
 	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
 	assert_true(p.bias <= 0.004);
 	assert_true(p.coverage >= 0.95);
@@ -208,7 +208,7 @@ static void the_error_of_neighbours_is_in_the_interval(void **state)
 	const double variance = 1.0 / 2.0 + 1.0 / 12.0;
 	const struct function f = {
 	    .name = "waves", .y = waves, .variance = variance, .index = {0.5 / variance, 1.0 / 12.0 / variance}};
-	// a wave of 6 of the wider bandwidths: extrapolation overshoots by some hundredths
+	// a wave of 6 of the wider reaches: extrapolation overshoots by some hundredths
 	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
 	assert_true(p.bias > 0.02);
 	assert_true(p.coverage >= 0.95);
