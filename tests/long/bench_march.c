@@ -342,8 +342,7 @@ static struct batch variant_batch(const struct variant *v, const struct pound_sc
 	return batch;
 }
 
-/* Time of a run with stiffer contacts, with other ends of contact, and of faster bodies, for which a sample is
- * longer. */
+/* Time of a run with stiffer contacts, without restitution or tension, without contact, and with faster bodies. */
 static void variant_rows(const struct pound_scene *scene, const struct batch *like)
 {
 	static const char goal[] = "at most 3";

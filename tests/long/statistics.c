@@ -3,10 +3,9 @@
  *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise, growth, tails or signals; default: all
  *
  * 1. A job is one function in one setting; its seeds are computed one after another, so the numbers do not depend on
- * the
- *    number of threads.
- * 2. Functions are run as external models: pound_run_create, outputs assigned, reduced. 3. Progress goes to stderr,
- * Markdown tables to stdout. */
+ *    the number of threads.
+ * 2. Functions are run as external models: pound_run_create, outputs assigned, reduced.
+ * 3. Progress goes to stderr, Markdown tables to stdout. */
 #include "tests/long/statistics.h"
 
 #include <math.h>

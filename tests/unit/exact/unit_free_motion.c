@@ -113,8 +113,8 @@ static void two_halves_of_a_sample_are_the_whole(void **state)
 	}
 }
 
-/* With the velocity along - cos(phase), a body moves back for 2 acos(along) radians of the phase, by 2 (sin a - a cos
- * a). */
+/* With the velocity along - cos(phase), a body moves back for 2 acos(along) radians of the phase, by
+ * 2 (sin a - a cos a). */
 static void a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said(void **state)
 {
 	(void)state;

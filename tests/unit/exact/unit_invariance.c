@@ -1,5 +1,5 @@
 /* Quantities that must not change, or change in a known way, if a scene is written in other units, mirrored or
- * resampled. There is no oracle: the engine is compared with itself. */
+ * resampled.  There is no oracle: the engine is compared with itself. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 

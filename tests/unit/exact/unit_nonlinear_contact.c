@@ -197,9 +197,9 @@ static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
 
 /* ---- rigid contacts ---- */
 
-/* A constant acceleration of 1 m/s2 drives a body against a wall 10 mm away; it bounces with e = 0.5 from (2
- * gap/a)^1/2 on, and is in sustained contact from three times that time until the ground acceleration changes sign at
- * 0.81 s. */
+/* A constant acceleration of 1 m/s2 drives a body against a wall 10 mm away; it bounces with e = 0.5 from
+ * (2 gap/a)^1/2 on, and is in sustained contact from three times that time until the ground acceleration changes sign
+ * at 0.81 s. */
 static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 {
 	(void)state;

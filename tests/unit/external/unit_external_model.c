@@ -143,8 +143,8 @@ static void outputs_computed_elsewhere_give_the_golden_indices(void **state)
 	free(csv);
 }
 
-/* Corrected indices by their definition, for independent noise of variance v (1 + p) in sample p of every row: S =
- * (P_BC - P_AB) / ((P_AA + P_BB) / 2), T = (P_AA + P_CC - 2 P_AC) / (2 w), about the mean of all samples. */
+/* Corrected indices by their definition, for independent noise of variance v (1 + p) in sample p of every row:
+ * S = (P_BC - P_AB) / ((P_AA + P_BB) / 2), T = (P_AA + P_CC - 2 P_AC) / (2 w), about the mean of all samples. */
 static void corrected(double v, double value[4])
 {
 	double g = 0.0, pair = 0.0, all = 0.0;

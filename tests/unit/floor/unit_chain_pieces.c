@@ -1,8 +1,8 @@
 /* unit_chain_pieces.c - floors of chains, by two ways each.
  *
- * 1. A pair by the solver of pairs and as a chain of two one-story buildings. 2. An oscillator on a floor is an
- * additional story of negligible mass, whose largest drift times w^2 is the ordinate: for
- *    every contact model. */
+ * 1. A pair by the solver of pairs and as a chain of two one-story buildings.
+ * 2. An oscillator on a floor is an additional story of negligible mass, whose largest drift times w^2 is the ordinate:
+ *    for every contact model. */
 #include <math.h>
 #include <string.h>
 

@@ -2,8 +2,9 @@
  * every lane width, with 1, 2 and 4 threads, and in every version until one declares a change.
  *
  * `make test` uses few rows and omits the portable build, which is ten times slower; `make golden` computes whole
- * examples in every way (POUND_GOLDEN=whole). For a version that changes results on purpose, POUND_GOLDEN=print
- * prints the new file. The Makefile links pound_dispatch_width through this file, which requests one width. */
+ * examples in every way (POUND_GOLDEN=whole).
+ * For a version that changes results on purpose, POUND_GOLDEN=print prints the new file.
+ * The Makefile links pound_dispatch_width through this file, which requests one width. */
 #include <nettle/sha2.h>
 #include <pthread.h>
 #include <stdatomic.h>

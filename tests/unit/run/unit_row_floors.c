@@ -1,8 +1,8 @@
 /* unit_row_floors.c - floor spectra and histories of rows of buildings, from documents.
  *
- * 1. One-story rows against two oscillators, which another solver integrates. 2. Mirrored rows; places in studies of
- * spectra and in sensitivity studies; the end of a history, and its contact. 3. Spectra from histories of every
- * contact model. */
+ * 1. One-story rows against two oscillators, which another solver integrates.
+ * 2. Mirrored rows; places in studies of spectra and in sensitivity studies; the end of a history, and its contact.
+ * 3. Spectra from histories of every contact model. */
 #include <math.h>
 #include <string.h>
 

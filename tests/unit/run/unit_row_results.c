@@ -1,8 +1,8 @@
 /* unit_row_results.c - rows of buildings from documents to results.
  *
- * 1. Known answers of seven rows, by two independent programs with 113-bit arithmetic. 2. One-story rows against two
- * oscillators, which another solver integrates. 3. Invariants without an oracle: mirrored rows, equal buildings,
- * scaling. */
+ * 1. Known answers of seven rows, by two independent programs with 113-bit arithmetic.
+ * 2. One-story rows against two oscillators, which another solver integrates.
+ * 3. Invariants without an oracle: mirrored rows, equal buildings, scaling. */
 #include <math.h>
 #include <string.h>
 

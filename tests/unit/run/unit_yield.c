@@ -77,7 +77,7 @@ static struct seen seen_of(const char *law, int corrections)
 }
 
 /* A continuous demand takes every value from 0 (a body that never yields) upwards, so every target has a yield
- * displacement. Bisection would halve the bracket, initially a factor of about 2, 40 times until a demand that
+ * displacement.  Bisection would halve the bracket, initially a factor of about 2, 40 times until a demand that
  * changes by its millionth power is within 1e-6. */
 static void a_search_ends_at_the_target_demand(void **state)
 {
