@@ -246,8 +246,7 @@ void bench_reference(void)
 
 /* ---- the kernel ---- */
 
-/* Time of a sample of two bodies always separated, of a sample with contacts, and the additional time of a contact,
- * by lanes. */
+/* Time of a sample of two bodies always separated, of a sample with contacts, and the additional time of a contact, by lanes. */
 static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 {
 	static const int widths[] = {1, 4, 8};
@@ -406,8 +405,7 @@ static void signal_rows(const struct pound_excitation *e)
 	free(motions.ground);
 }
 
-/* The reference scene through the exact solver by lanes, by law and in other scenes, and the generation of ground
- * motions. */
+/* The reference scene through the exact solver by lanes, by law and in other scenes, and the generation of ground motions. */
 void bench_kernel(void)
 {
 	struct pound_study *study = bench_study(reference);

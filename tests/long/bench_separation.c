@@ -1,5 +1,4 @@
-/* bench_separation.c - cost of a gap curve relative to its runs without contact, and of outputs relative to their
- * runs. */
+/* bench_separation.c - cost of a gap curve relative to its runs without contact, and of outputs relative to their runs. */
 #include <stdio.h>
 #include <stdlib.h>
 

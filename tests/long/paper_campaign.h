@@ -18,8 +18,7 @@ struct campaign {
 	double noise_share[EFFECTS][LAWS][FREQUENCIES];
 };
 
-/* Runs the example study `paper` with the settings of a plan, on all cores; progress goes to stderr.  Exits on
- * failure. */
+/* Runs the example study `paper` with the settings of a plan, on all cores; progress goes to stderr.  Exits on failure. */
 void campaign_run(const struct campaign_plan *plan, struct campaign *campaign);
 
 #endif

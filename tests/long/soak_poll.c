@@ -282,8 +282,7 @@ static int page_read(struct page *page, double pause)
 	return atoi(answer + 9);
 }
 
-/* Opens 100 pages for some time; id NULL: pages of the list.  Returns the fraction of a core that answering them
- * takes. */
+/* Opens 100 pages for some time; id NULL: pages of the list.  Returns the fraction of a core that answering them takes. */
 static double pages_cost(const struct service *service, const char *id, double seconds)
 {
 	static struct page pages[PAGES];

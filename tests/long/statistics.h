@@ -11,8 +11,7 @@ enum { STATISTICS_INDEXES = 2 * FUNCTION_INPUTS }; /* first-order, then total */
 extern const struct function statistics_functions[]; /* ends with a row of NULLs */
 const struct function *statistics_function(int k);
 
-/* First-order indices, then totals, from the outputs of n rows of n_samples samples: A, B, A with column j from B,
- * ... */
+/* First-order indices, then totals, from the outputs of n rows of n_samples samples: A, B, A with column j from B, ... */
 struct statistics_package {
 	const char *name;
 	void (*indices)(const double *y, int n, int d, int n_samples, double *value); /* value  (2 x d) */

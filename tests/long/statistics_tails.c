@@ -87,8 +87,7 @@ static void pareto_sum_exact(const struct tail *tail, double *value)
 		value[k] = v[k % 4] / all;
 }
 
-/* An event of one sample in a hundred that needs three inputs; 1 or 0: each factor has mean square over squared mean
- * 1/p. */
+/* An event of one sample in a hundred that needs three inputs; 1 or 0: each factor has mean square over squared mean 1/p. */
 static double event(const double *u)
 {
 	return u[0] > 0.8 && u[1] > 0.8 && u[2] > 0.75 ? 1.0 : 0.0;

@@ -59,8 +59,7 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 	}
 }
 
-/* In a damped contact under a growing force the overlap grows: each contact substep ends at a new largest
- * displacement. */
+/* In a damped contact under a growing force the overlap grows: each contact substep ends at a new largest displacement. */
 static void a_press_that_grows_for_long_goes_by_more_than_cells(void **state)
 {
 	(void)state;
@@ -98,8 +97,7 @@ static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void *
 	}
 }
 
-/* Two bodies of different frequency that oscillate, collide, bounce and stay in contact under ground motion of two
- * sines. */
+/* Two bodies of different frequency that oscillate, collide, bounce and stay in contact under ground motion of two sines. */
 static struct pound_task pounding(double *ground, int t, int n)
 {
 	double ratio = t % 2 ? 0.6 : 3, w[2] = {2 * M_PI * 2, 2 * M_PI * 3.1}, stiffness = pow(10, 4 + t % 7);

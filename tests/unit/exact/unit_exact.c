@@ -1,5 +1,4 @@
-/* unit_exact.c - the exact solver against closed forms: one impact, impacts on a wall, and the same bits at every
- * lane count. */
+/* unit_exact.c - the exact solver against closed forms: one impact, impacts on a wall, and the same bits at every lane count. */
 #include "tests/support/check.h"
 
 #include <float.h>
@@ -356,8 +355,7 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 	check_alone_as_together(tasks);
 }
 
-/* Bodies separated and at rest in the end: the time at which the solver detects it must depend on the one simulation
- * only. */
+/* Bodies separated and at rest in the end: the time at which the solver detects it must depend on the one simulation only. */
 static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **state)
 {
 	(void)state;

@@ -348,8 +348,7 @@ static void every_extreme_is_finite_balanced_bounded_and_agreed_on(void **state)
 
 /* ---- grazing, and simultaneous events ---- */
 
-/* A body that moves towards a wall and touches it only if the gap is below its largest displacement, which is
- * returned. */
+/* A body that moves towards a wall and touches it only if the gap is below its largest displacement, which is returned. */
 static double wall_make(struct specimen *specimen, const struct extreme *row)
 {
 	extreme_make(specimen, row);

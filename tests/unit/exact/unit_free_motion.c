@@ -1,5 +1,4 @@
-/* unit_free_motion.c - maps over whole samples: bounds of the motion inside a sample, against maps over fractions of
- * it. */
+/* unit_free_motion.c - maps over whole samples: bounds of the motion inside a sample, against maps over fractions of it. */
 #include "tests/support/check.h"
 
 #include <math.h>

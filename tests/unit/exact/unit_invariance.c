@@ -255,8 +255,7 @@ static void a_hardening_ratio_of_one_is_linear(void **state)
 	check_linear(0.002, false);
 }
 
-/* Energy of the motion, of the springs and of the contact spring, of linear bodies.  p > 0 in contact, p <= 0
- * separated. */
+/* Energy of the motion, of the springs and of the contact spring, of linear bodies.  p > 0 in contact, p <= 0 separated. */
 static double energy(const struct pound_scene *scene, const struct pound_response *r)
 {
 	double sum = 0, k_max = 0;

@@ -303,8 +303,7 @@ static void a_yielding_stroke_loses_the_area_of_half_a_loop(void **state)
 	check_near((push.energy - energy) / 1e-4 / 2, 0.95 * (2 - 1), 1e-10);
 }
 
-// an origin-oriented oscillator whose pulse leads to twice its yield displacement, some time after the middle of the
-// pulse
+// an origin-oriented oscillator whose pulse leads to twice its yield displacement, some time after the middle of the pulse
 static struct pound_response pushed_to_two(double after)
 {
 	// the middle of the pulse is one step after time 0
@@ -319,8 +318,7 @@ static struct pound_response pushed_to_two(double after)
 static void an_origin_oriented_oscillator_loses_energy_on_the_first_push_only(void **state)
 {
 	(void)state;
-	// to the largest displacement, then along the secant to the origin: a quarter of the period of the secant
-	// stiffness
+	// to the largest displacement, then along the secant to the origin: a quarter of the period of the secant stiffness
 	double w = 2 * pi, secant = 1.05 / 2, quarter = 0.25 / sqrt(secant);
 	double at_origin = time_to_reversal(2, 0.05) + quarter;
 	struct pound_response r = pushed_to_two(at_origin);
@@ -415,8 +413,7 @@ static void a_gap_that_is_never_reached_leaves_both_free(void **state)
 	}
 }
 
-/* The largest gap that is reached is found by bisection: just below it there is one light contact, just above it
- * none. */
+/* The largest gap that is reached is found by bisection: just below it there is one light contact, just above it none. */
 static void a_gap_is_touched_exactly_when_the_free_responses_close_it(void **state)
 {
 	(void)state;

@@ -307,8 +307,7 @@ static void an_inert_input_has_no_total_once_replicates_give_the_noise(void **st
 	    results_of_lines("{\"inputs\": [{\"name\": \"a\", " UNIFORM ", {\"name\": \"b\", " UNIFORM
 	                     ", {\"name\": \"c\", " UNIFORM ", {\"name\": \"d\", " UNIFORM "]}",
 	                     csv);
-	// nu = sigma^2 / (R V) = 0.2: raw T of an input without effect is nu / (1 + nu); corrected: RMSE 0.0097 for this
-	// function
+	// nu = sigma^2 / (R V) = 0.2: raw T of an input without effect is nu / (1 + nu); corrected: RMSE 0.0097 for this function
 	check_near(index_of(result, 0, 3, "ST_raw"), 0.2 / 1.2, 4 * 0.0097);
 	check_near(index_of(result, 0, 3, "ST_pick_freeze"), 0.0, 4 * 0.0097);
 	for (int j = 0; j < D; j++) {
@@ -565,8 +564,7 @@ static void every_spelling_of_a_decimal_number_is_one(void **state)
 	study_free(study);
 }
 
-/* The rows that `pound design` prints of a growing design are the rows that `pound indices` reads: those of its first
- * look. */
+/* The rows that `pound design` prints of a growing design are the rows that `pound indices` reads: those of its first look. */
 static void a_design_that_grows_is_that_of_its_first_look(void **state)
 {
 	(void)state;

@@ -18,8 +18,7 @@ static double index_of(const struct reading *result, int input, const char *name
 	return reading_number(result, "/cells/0/outputs/0/inputs/%d/%s", input, name);
 }
 
-/* An additive function of two inputs with noise: if common, all samples of a row share four factors, else each has
- * its own. */
+/* An additive function of two inputs with noise: if common, all samples of a row share four factors, else each has its own. */
 static char *noisy_csv(const struct pound_study *study, bool common, double noise)
 {
 	char *csv = NULL;

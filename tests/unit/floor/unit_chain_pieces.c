@@ -135,8 +135,7 @@ static void a_pair_is_a_chain_of_one_story_buildings(void **state)
 
 /* ---- an oscillator is a story ---- */
 
-/* Three stories beside three, with contacts at floors 1 and 3; f > 0: an oscillator of that frequency is on the third
- * floor. */
+/* Three stories beside three, with contacts at floors 1 and 3; f > 0: an oscillator of that frequency is on the third floor. */
 static void row_make(struct row *row, const char *model, int law, double f)
 {
 	const double light = 1e-13;

@@ -275,8 +275,7 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	pound_floor_start(&motion);
 	assert_true(pound_exact_lanes(0, &observed, &result, 1, scratch, NULL));
 	drive_take(&largest);
-	// a jump of the slope at the start of a contact leaves a relative error of contact frequency / own, 25 Hz to 20
-	// kHz
+	// a jump of the slope at the start of a contact leaves a relative error of contact frequency / own, 25 Hz to 20 kHz
 	check_near(psa[0][0] / largest.value, 1, 2e-3);
 	specimen_free(&specimen);
 }

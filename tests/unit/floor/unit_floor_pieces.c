@@ -216,8 +216,7 @@ static void a_contact_without_losses_is_followed_however_stiff(void **state)
 static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 {
 	(void)state;
-	// the contact force starts at once, and the contact oscillates about it; the force grows, so the contact does not
-	// open
+	// the contact force starts at once, and the contact oscillates about it; the force grows, so the contact does not open
 	static const double ground[] = {-0.01, -0.31, -0.61, -0.91};
 	struct followed f;
 	for (int stiff = 0; stiff < 2; stiff++) {
@@ -268,8 +267,7 @@ static void bodies_alike_but_for_roundings_are_followed(void **state)
 	}
 }
 
-/* Beyond critical damping of the contact the faster of two decay rates sets the steps: at most 60 times the
- * frequency. */
+/* Beyond critical damping of the contact the faster of two decay rates sets the steps: at most 60 times the frequency. */
 static void a_damped_body_pressed_on_a_wall_is_followed(void **state)
 {
 	(void)state;
@@ -282,8 +280,7 @@ static void a_damped_body_pressed_on_a_wall_is_followed(void **state)
 	}
 }
 
-/* Bodies in almost plastic contact lose half of their motion in a second: after minutes no motion remains to be
- * followed. */
+/* Bodies in almost plastic contact lose half of their motion in a second: after minutes no motion remains to be followed. */
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;

@@ -95,8 +95,7 @@ static void a_half_sine_gives_the_known_shock_spectrum(void **state)
 	}
 }
 
-// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed
-// digits
+// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed digits
 static const double trains[][3] = {
     {0.02, 1, 6.962120396}, {0.02, 2, 8.521925099}, {0.02, 4, 9.808148215}, {0.02, 8, 12.229549038},
     {0.05, 1, 3.402154673}, {0.05, 2, 3.967773484}, {0.05, 4, 5.176797556}, {0.05, 8, 8.063219064},
@@ -119,8 +118,7 @@ static void a_train_of_velocity_steps_gives_the_exact_values(void **state)
 	}
 }
 
-/* A constant acceleration from rest: peak of twice the static displacement undamped, 1 + exp(-xi pi/s) times it
- * damped. */
+/* A constant acceleration from rest: peak of twice the static displacement undamped, 1 + exp(-xi pi/s) times it damped. */
 // the fastest takes 5e5 steps, each with a rounding error of 2e-16
 static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 {
@@ -248,8 +246,7 @@ static void a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group(void
 	check_near(top[1] / top[0], 1, 2e-14);
 }
 
-/* A constant plus a power of time with a coefficient that is not negligible: the oscillator's series continues beyond
- * it. */
+/* A constant plus a power of time with a coefficient that is not negligible: the oscillator's series continues beyond it. */
 static void a_piece_whose_last_coefficient_is_no_rounding_is_followed_to_rounding(void **state)
 {
 	(void)state;

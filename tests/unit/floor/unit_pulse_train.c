@@ -6,8 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed
-// digits
+// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed digits
 static const struct {
 	double xi, n, exact;
 } trains[] = {
@@ -64,8 +63,7 @@ static void undamped_pulses_in_step_add_up(void **state)
 	check_near(pound_pulse_train_peaks(&dirac, 4 * pi, 0), 40 * 4 * pi, 1e-10);
 }
 
-/* Far below the frequency of the pulses the floor's velocity is a step of N v1, as the oscillator hardly moves
- * meanwhile. */
+/* Far below the frequency of the pulses the floor's velocity is a step of N v1, as the oscillator hardly moves meanwhile. */
 static void a_slow_oscillator_sees_all_pulses_as_one(void **state)
 {
 	(void)state;

@@ -1,5 +1,4 @@
-/* unit_segment_powers.c - derivatives of powers at the start of segments of a piece, against factorials and the
- * powers. */
+/* unit_segment_powers.c - derivatives of powers at the start of segments of a piece, against factorials and the powers. */
 #include <math.h>
 
 #include "engine/floor/segment_powers.h"

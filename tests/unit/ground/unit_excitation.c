@@ -1,5 +1,4 @@
-/* Properties of an excitation's samples that do not depend on the noise; unit_normals and unit_kanai_tajimi test the
- * noise. */
+/* Properties of an excitation's samples that do not depend on the noise; unit_normals and unit_kanai_tajimi test the noise. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -162,8 +161,7 @@ static void kanai_tajimi_noise_is_the_filter_output_scaled(void **state)
 		check_near(a[k], b[k] / most, 0x1p-52);
 }
 
-/* n samples of variance v: the mean of a_k a_k+lag has the standard error v/sqrt n, and the mean of a_k^2 sqrt 2
- * times that */
+/* n samples of variance v: the mean of a_k a_k+lag has the standard error v/sqrt n, and the mean of a_k^2 sqrt 2 times that */
 static void white_noise_has_no_memory(void **state)
 {
 	(void)state;

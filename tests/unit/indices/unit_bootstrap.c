@@ -134,8 +134,8 @@ static void first_row(const void *subject, int row, double *m)
 	*m = row == 0;
 }
 
-/* 7 for a resample that contains row 0, otherwise undefined; always undefined; undefined for samples that contain row
- * 0 once, as all rows do. */
+/* 7 for a resample that contains row 0, otherwise undefined; always undefined; undefined for resamples that contain
+ * row 0 once, as all rows do. */
 static void seven_or_nothing(const void *subject, const double *mean, double *value)
 {
 	(void)subject;

@@ -1,5 +1,4 @@
-/* unit_chaos_expansion.c - indices with a polynomial control variate: polynomials exactly, known functions within
- * limits. */
+/* unit_chaos_expansion.c - indices with a polynomial control variate: polynomials exactly, known functions within limits. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"

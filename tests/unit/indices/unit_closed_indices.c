@@ -1,5 +1,4 @@
-/* unit_closed_indices.c - second-order and closed indices, Shapley effects: golden contrasts, identities, known
- * functions. */
+/* unit_closed_indices.c - second-order and closed indices, Shapley effects: golden contrasts, identities, known functions. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"

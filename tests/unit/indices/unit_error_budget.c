@@ -135,8 +135,7 @@ static void indices_move_no_more_than_stated_when_noise_is_added(void **state)
 		int further = 0;
 		for (int seed = 0; seed < SEEDS; seed++)
 			further += moved_further(function_named("ishigami"), N, shares[k], 100 + (uint64_t)seed);
-		// twice the standard deviation is exceeded in at most 4.6 % of cases, as the deviations of the terms are
-		// added
+		// twice the standard deviation is exceeded in at most 4.6 % of cases, as the deviations of the terms are added
 		assert_in_range(further, 0, (int)(0.046 * SEEDS * 2 * D));
 	}
 }

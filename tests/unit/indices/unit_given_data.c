@@ -135,7 +135,6 @@ static void indices_of_ishigami_are_in_their_intervals(void **state)
 		samples_free(&s);
 	}
 	// at least 0.90 of the intervals hold, less 2.4 binomial standard deviations of their number
-	// dependent
 	check_report("%d of %d intervals missed", missed, SEEDS * 2 * D);
 	assert_true(missed <= 0.10 * SEEDS * 2 * D + 3 * sqrt(0.09 * SEEDS) * 2);
 }

@@ -110,8 +110,7 @@ static double logarithms(const double *x)
 static void a_sum_of_logarithms_shares_what_its_ratios_have_in_common(void **state)
 {
 	(void)state;
-	// with V the variance of each logarithm: Var y = 6 V;  E[y | a] = a + E[b | a].  By symmetry both effects are
-	// 1/2.
+	// with V the variance of each logarithm: Var y = 6 V;  E[y | a] = a + E[b | a].  By symmetry both effects are 1/2.
 	struct pound_ratio_indices got = indices_of(logarithms, 500, 3);
 	for (int k = 0; k < 2; k++) {
 		assert_true(got.shapley[k].low <= 0.5 && 0.5 <= got.shapley[k].high);

@@ -1,5 +1,4 @@
-/* unit_local_regression.c - local-linear first-order indices: golden predictions, exact lines, errors over a hundred
- * designs. */
+/* unit_local_regression.c - local-linear first-order indices: golden predictions, exact lines, errors over a hundred designs. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -159,8 +158,7 @@ static struct performance performance_of(const struct function *f, struct functi
 static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **state)
 {
 	(void)state;
-	// measured over 100 designs; pick-freeze has 0.020 to 0.033, one reach alone 0.006 to 0.010 and a bias at
-	// jumps
+	// measured over 100 designs; pick-freeze has 0.020 to 0.033, one reach alone 0.006 to 0.010 and a bias at jumps
 	static const struct {
 		const char *name;
 		double rms;
@@ -242,8 +240,7 @@ static void means_at_the_values_of_a_discrete_input_are_its_index(void **state)
 	double *x = function_design(N, 5);
 	struct pound_estimate first[D];
 	first_of(&values, x, false, first);
-	// a hypercube has the levels in proportion; what remains is the variance of u2 within the levels, 1/12 over 3000
-	// rows
+	// a hypercube has the levels in proportion; what remains is the variance of u2 within the levels, 1/12 over 3000 rows
 	check_near(first[0].value, 1.24 / variance, 2e-3);
 	assert_true(first[0].low <= 1.24 / variance && 1.24 / variance <= first[0].high);
 	check_near(first[1].value, 1.0 / 12.0 / variance, 0.03);

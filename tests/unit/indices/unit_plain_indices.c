@@ -1,5 +1,4 @@
-/* unit_plain_indices.c - indices of one output from its sample values: known functions, noise, failed runs,
- * intervals. */
+/* unit_plain_indices.c - indices of one output from its sample values: known functions, noise, failed runs, intervals. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"

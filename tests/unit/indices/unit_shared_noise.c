@@ -190,8 +190,7 @@ static void check_mean(const struct score *score)
 	}
 }
 
-/* What each column estimates: raw columns the indices given the shared noise; with independent noise all are indices
- * of y. */
+/* What each column estimates: raw columns the indices given the shared noise; with independent noise all are indices of y. */
 static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 {
 	(void)state;

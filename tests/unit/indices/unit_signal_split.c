@@ -79,8 +79,7 @@ static void the_variance_of_an_index_follows_its_three_parts(void **state)
 	check_near(pound_split_variance(&parts, 2), 1.0 + 3.0 + 6.0, 1e-14);
 	check_near(pound_split_variance(&parts, 4), 1.0 + 1.5 + 1.0, 1e-14);
 	check_near(pound_split_bias(&parts, 5), 0.025, 1e-15);
-	// the mean square errors over 60 designs are known to 1 / sqrt(2 60 4) at best; variances of intervals scatter
-	// likewise
+	// the mean square errors over 60 designs are known to 1 / sqrt(2 60 4) at best; variances of intervals scatter likewise
 	const struct function *f = function_named("cusp");
 	for (int common = 0; common < 2; common++) {
 		struct pound_split_parts mean[2 * D];
@@ -117,8 +116,7 @@ static void plain_means_have_no_bias(void **state)
 		check_near(mean[k].bias, 0.0, 1e-10);
 }
 
-/* Values with lognormal denominators; the larger the first input, the weaker the correlation of the numerators with
- * them. */
+/* Values with lognormal denominators; the larger the first input, the weaker the correlation of the numerators with them. */
 static void ratios_make(const double *u, int rows, uint64_t seed, int n_signals, double *numerator)
 {
 	double *denominator = numerator + (size_t)rows * (D + 2) * n_signals;

@@ -1,5 +1,4 @@
-/* unit_json_strict.c - texts that are JSON and texts that are not, of every kind; the public test suite if it is
- * installed. */
+/* unit_json_strict.c - texts that are JSON and texts that are not, of every kind; the public test suite if it is installed. */
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>

@@ -11,8 +11,7 @@ enum { MOST = 40 };
 static int first[MOST], begin[MOST];
 static double values[MOST * (MOST + 1) / 2], whole[MOST][MOST], x[MOST], b[MOST];
 
-/* Random springs between equations, each row to some rows before it, and a spring `ground` from each row to the
- * ground. */
+/* Random springs between equations, each row to some rows before it, and a spring `ground` from each row to the ground. */
 static struct pound_envelope springs(uint64_t *seed, int n, double ground)
 {
 	struct pound_envelope e = {n, first, begin, values};

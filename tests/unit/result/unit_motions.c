@@ -1,5 +1,4 @@
-/* unit_motions.c - the ground motions of a study as files: the motions of its runs, and the same numbers in every
- * format. */
+/* unit_motions.c - the ground motions of a study as files: the motions of its runs, and the same numbers in every format. */
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,4 @@
-/* unit_findings.c - every finding of the paper is reported to hold, to fail and to be undecided for suitable
- * evidence. */
+/* unit_findings.c - every finding of the paper is reported to hold, to fail and to be undecided for suitable evidence. */
 #include "tests/support/check.h"
 #include "tests/support/findings.h"
 

@@ -83,8 +83,7 @@ static void indices_of_a_group_are_those_of_its_inputs_as_one(void **state)
 		for (int g = 0; g < GROUPS; g++) {
 			const struct pound_estimate *first = &groups->first[g], *total = &groups->total[g];
 			const double half[2] = {0.5 * (first->high - first->low), 0.5 * (total->high - total->low)};
-			// one of 24 intervals of two standard deviations may miss, none by more than another half of its half
-			// width
+			// one of 24 intervals of two standard deviations may miss, none by more than another half of its half width
 			check_near(first->value, explained(sets[g]) / whole, 1.5 * half[0]);
 			check_near(total->value, 1 - explained(0x3f & ~sets[g]) / whole, 1.5 * half[1]);
 			assert_true(half[0] > 0 && half[0] < 0.1 && half[1] > 0 && half[1] < 0.1);

@@ -104,8 +104,7 @@ static void the_right_body_is_run_where_an_output_reads_it(void **state)
 	assert_true(run[0] < run[1]);
 }
 
-/* A row: outputs of a place are those of its story and floor; outputs of contacts are the largest or the sum over
- * all. */
+/* A row: outputs of a place are those of its story and floor; outputs of contacts are the largest or the sum over all. */
 static void outputs_of_rows_are_means_of_the_signals(void **state)
 {
 	static const struct {
@@ -205,8 +204,7 @@ static void the_gap_needed_decides_which_signals_pound(void **state)
 			}
 }
 
-/* For rows: some contact closes exactly if it needs more than its gap.  One-story buildings need the same as
- * oscillators. */
+/* For rows: some contact closes exactly if it needs more than its gap.  One-story buildings need the same as oscillators. */
 static void the_gap_needed_decides_which_signals_pound_in_rows(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic", "origin_oriented"};
@@ -267,8 +265,7 @@ static void the_relative_displacement_is_the_larger_of_both_directions(void **st
 	assert_true(opening > 0 && opening < 8);
 }
 
-/* Maps from sample to sample against the exact solver and its observer, with 1 to 6 ground motions of the same
- * bodies. */
+/* Maps from sample to sample against the exact solver and its observer, with 1 to 6 ground motions of the same bodies. */
 static void linear_bodies_have_the_peaks_that_an_observer_finds(void **state)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];

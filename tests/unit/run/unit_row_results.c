@@ -317,8 +317,7 @@ static void a_linear_row_scales(void **state)
 	free(stronger);
 }
 
-/* A property of one story, of all stories, their number, a level, and the gap of one contact: each cell equals its
- * document. */
+/* A property of one story, of all stories, their number, a level, and the gap of one contact: each cell equals its document. */
 static void what_a_sweep_varies_is_what_a_document_says(void **state)
 {
 	(void)state;

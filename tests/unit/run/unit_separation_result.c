@@ -213,8 +213,7 @@ static void with_inputs_the_runs_are_those_of_the_design(void **state)
 	reading_close(indices);
 }
 
-/* Linear bodies: gaps are proportional to the intensity, so a curve over ln x is the distribution of the gaps over ln
- * g. */
+/* Linear bodies: gaps are proportional to the intensity, so a curve over ln x is the distribution of the gaps over ln g. */
 static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 {
 	(void)state;

@@ -318,7 +318,7 @@ static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(voi
 			assert_int_equal(status, POUND_NOMEM);
 		}
 	until_starved = -1;
-	// the check run and the adaptive solver, whose motions and histories need two each
+	// the second opinion and the adaptive solver, whose motions and histories need two each
 	assert_true(starved > 2 * 2 * 2);
 	for (int block = 0; block < pound_run_blocks(again); block++) {
 		// run times are not compared: the test has no clock

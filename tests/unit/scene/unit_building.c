@@ -59,8 +59,7 @@ static void a_profile_is_scaled_to_the_first_frequency(void **state)
 	check_near(storeys.stiffness[1] / storeys.stiffness[2], 1.2, 1e-14);
 }
 
-/* With one story every form is 2 xi m w; with many, forms define the damping of modes 1 and 3: a0/(2 w) + a1 w/2 =
- * xi. */
+/* With one story every form is 2 xi m w; with many, forms define the damping of modes 1 and 3: a0/(2 w) + a1 w/2 = xi. */
 static void damping_is_that_of_its_form(void **state)
 {
 	(void)state;

@@ -47,8 +47,8 @@ static void pounding_is_counted_run_by_run(void **state)
 	    pound_needed_probability(&(struct pound_needed){.n_clusters = 1, .size = 1, .gap = none}, 0).value));
 }
 
-/* Clopper-Pearson: at each limit a tail of the binomial sum is 0.025; without pounding in n runs the upper limit is 1
- * - 0.025^(1/n). */
+/* Clopper-Pearson: at each limit a tail of the binomial sum is 0.025; without pounding in n runs the upper limit is
+ * 1 - 0.025^(1/n). */
 static void the_band_is_the_exact_binomial_one(void **state)
 {
 	(void)state;
@@ -192,8 +192,7 @@ static void rules_are_ordered_and_meet_at_their_limits(void **state)
 
 enum { LEVELS = 6, RECORDS = 60 };
 
-/* Capacities of records as intensities, lognormal; a record at its capacity needs a gap of 1, otherwise in
- * proportion. */
+/* Capacities of records as intensities, lognormal; a record at its capacity needs a gap of 1, otherwise in proportion. */
 static void stripes_make(struct pound_stripes *stripes, struct pound_needed needed[LEVELS], double *gaps,
                          uint64_t *stream, bool scaled)
 {
@@ -262,8 +261,8 @@ static void two_points_are_on_the_curve_and_counts_without_one_have_none(void **
 	assert_true(isnan(pound_fragility_fit(&stripes, 1).median.value));
 }
 
-/* lambda = 0.01 x^-2; every run at intensity x needs a gap x: the rate of pounding at a gap g is 0.01 g^-2 if g is
- * halfway between two intensities on the line in ln x. */
+/* lambda = 0.01 x^-2; every run at intensity x needs a gap x: at a gap between two intensities the probability of pounding
+ * rises from 0 at the lower to 1 at the higher one, linearly in ln x. */
 static void the_rate_over_a_power_law_is_its_closed_form(void **state)
 {
 	(void)state;

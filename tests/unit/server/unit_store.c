@@ -254,8 +254,7 @@ static void a_link_to_no_database_yet_makes_it_where_it_leads(void **state)
 	unlink(name);
 }
 
-/* The kernel releases the lock of a killed process only after its memory, which takes longer the larger the memory
- * is. */
+/* The kernel releases the lock of a killed process only after its memory, which takes longer the larger the memory is. */
 static void a_store_whose_server_was_just_killed_is_opened(void **state)
 {
 	enum { LARGE = 256 << 20 };

@@ -85,7 +85,7 @@ static void without_contact_both_fixed_steps_are_of_second_order(void **state)
 }
 
 /* In 2 s with contacts errors are of first order: after five steps, each half the last, 16 times less, except for the
- * scatter due to the start of contacts.  The check run agrees with the reference. */
+ * scatter due to the start of contacts.  The second opinion agrees with the reference. */
 static void with_contact_errors_fall_and_the_second_opinion_agrees(void **state)
 {
 	(void)state;

@@ -131,8 +131,7 @@ static void fixed_steps_converge_to_the_known_answers(void **state)
 	}
 }
 
-/* Linear rows without contact, with every damping form: errors of the final displacements are of second order in the
- * step. */
+/* Linear rows without contact, with every damping form: errors of the final displacements are of second order in the step. */
 static void without_contact_fixed_steps_are_of_second_order(void **state)
 {
 	(void)state;

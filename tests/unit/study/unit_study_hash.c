@@ -112,8 +112,7 @@ static void every_sample_of_a_record_counts(void **state)
 	free(record);
 }
 
-// results of different builds are compared by their hashes: a new value here means that existing hashes become
-// invalid
+// results of different builds are compared by their hashes: a new value here means that existing hashes become invalid
 static void a_hash_stays_what_it_is(void **state)
 {
 	(void)state;

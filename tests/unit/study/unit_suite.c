@@ -82,8 +82,7 @@ static void factors_are_those_of_their_definition(void **state)
 	    {"\"scale\": {\"to\": \"none\"}, ", {1, 1, -0.5}},
 	    {"\"scale\": {\"to\": \"pga\", \"intensity_m_s2\": 3}, ", {3, 1.5, -0.75}},
 	    {"\"factor\": 2, \"scale\": {\"to\": \"pga\", \"intensity_m_s2\": 3}, ", {6, 3, -1.5}},
-	    // spectral accelerations have the ratios 1 : 2 : 2 except for the second record's coarser samples, chords of
-	    // its sine
+	    // spectral accelerations have the ratios 1 : 2 : 2 except for the second record's coarser samples, chords of its sine
 	    {"\"scale\": {\"to\": \"median_sa\", \"intensity_m_s2\": 3, \"period_s\": 0.5}, ", {NAN, NAN, NAN}},
 	};
 	for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
@@ -103,8 +102,7 @@ static void factors_are_those_of_their_definition(void **state)
 	}
 }
 
-/* A record scaled to a spectral acceleration produces it: the left oscillator has the period and the damping of the
- * scale. */
+/* A record scaled to a spectral acceleration produces it: the left oscillator has the period and the damping of the scale. */
 static void a_scaled_record_has_its_spectral_acceleration(void **state)
 {
 	(void)state;

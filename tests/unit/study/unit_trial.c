@@ -35,8 +35,7 @@ static void a_trial_ends_when_its_time_is_over(void **state)
 	study_free(longer);
 }
 
-/* Small studies have no trial runs; for others, twice the study has about twice the estimate, within the noise of
- * clocks. */
+/* Small studies have no trial runs; for others, twice the study has about twice the estimate, within the noise of clocks. */
 static void a_trial_corrects_the_count(void **state)
 {
 	(void)state;
