@@ -1,8 +1,9 @@
-/* bench.c - how fast the engine is, as one table in markdown.
+/* bench.c - speed of the engine, as one Markdown table.
  *
- *   bench [ROWS]     ROWS of the paper campaign's design, 1000 unless for a trial
+ *   bench [ROWS]     ROWS of the paper campaign's design; default 1000, fewer for a trial
  *
- * Times are CPU time, the least of several runs; what is compared runs in turn.  A goal missed is reported, not an error. */
+ * Times are CPU time, the least of several runs; compared jobs run in rotation.  A missed goal is reported and is no
+ * error. */
 #include "tests/long/bench.h"
 
 #include <stdarg.h>
@@ -103,7 +104,7 @@ static int lanes_widest(void)
 	return widest;
 }
 
-/* What this was measured on. */
+/* The machine of the measurement. */
 static void head(void)
 {
 	char line[256], processor[256] = "unknown processor", date[32];
@@ -135,7 +136,7 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	head();
-	// first, while this process is small: its children's peak memory begins with what it has
+	// first, while this process is small: the peak memory of its children includes its own
 	bench_campaign(rows);
 	bench_reference();
 	bench_kernel();

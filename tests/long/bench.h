@@ -1,4 +1,4 @@
-/* bench.h - the rows of `make bench`, and timing jobs beside each other.
+/* bench.h - the rows of `make bench`, and timing of several jobs under equal conditions.
  *
  * CPU seconds unless a row says wall. */
 #ifndef BENCH_H
@@ -10,15 +10,15 @@
 
 #include "engine/pound.h"
 
-/* one line of the table; what is 0 or NULL is left blank */
+/* one row of the table; 0 or NULL leaves a cell blank */
 struct bench_row {
 	const char *what;
 	double value;
 	const char *unit;
-	double ratio;     /* to what `to` says */
-	const char *to;   /* "the event solver" */
+	double ratio;     /* ratio to the row named by `to` */
+	const char *to;   /* such as "the event solver" */
 	double error;     /* relative, median over the signals */
-	const char *goal; /* "at most 3" */
+	const char *goal; /* such as "at most 3" */
 	bool met;
 };
 
@@ -32,15 +32,15 @@ struct bench_job {
 	double seconds; /* least CPU time of one run */
 };
 
-/* Runs all jobs in turn, `repeats` times, so that what else the machine does falls on all of them. */
+/* Runs the jobs in rotation, `repeats` times, so that other load affects all of them. */
 void bench_jobs(struct bench_job *jobs, int n, int repeats);
 double bench_seconds(clockid_t clock);
 
 _Noreturn void bench_fail(const char *why);
 struct pound_study *bench_study(const char *document);
-void *bench_memory(size_t bytes); /* zeroed, 64-byte aligned; ends the program when there is none */
+void *bench_memory(size_t bytes); /* zeroed, 64-byte aligned; exits if out of memory */
 
-/* the groups of rows */
+/* groups of rows */
 void bench_campaign(int rows);
 void bench_reference(void);
 void bench_kernel(void);

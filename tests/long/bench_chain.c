@@ -1,4 +1,4 @@
-/* bench_chain.c - rows of buildings beside a plain loop. */
+/* bench_chain.c - rows of buildings against a plain loop. */
 #include "tests/long/bench.h"
 
 #include <math.h>
@@ -10,16 +10,16 @@
 
 enum { SAMPLES = 2001, STEPS = 1000, DENSER = 2 };
 
-/* a row, and how it is run */
+/* a row and the settings of its run */
 struct chain_bench {
 	struct row row;
 	struct pound_chain_task task;
 	void *scratch;
 	bool yields;
-	double drift[ROW_FLOORS]; /* by the loop */
+	double drift[ROW_FLOORS]; /* computed by the loop */
 };
 
-/* Two buildings of n stories under 20 s of noise of 3 m/s2 at most, more or less; contacts at all floors. */
+/* Two buildings of n stories under 20 s of noise with a peak of about 3 m/s2; contacts at all floors. */
 static void chain_bench_init(struct chain_bench *b, int n, bool yields, double stiffness_ratio)
 {
 	struct row *row = &b->row;
@@ -57,7 +57,7 @@ static void run_loop(void *of)
 	(b->yields ? baseline_chain_yielding : baseline_chain_linear)(&b->task, STEPS, b->drift);
 }
 
-/* Largest difference of drifts, over the largest drift. */
+/* Largest difference of drifts, relative to the largest drift. */
 static double drift_error(const struct chain_bench *b, const double *drift, int stride)
 {
 	double most = 0, error = 0;
@@ -69,7 +69,7 @@ static double drift_error(const struct chain_bench *b, const double *drift, int 
 	return error / most;
 }
 
-/* The same with samples twice as dense on the same lines: other steps, other free motion. */
+/* The same ground motion with twice as many samples: other steps, other maps of free motion. */
 static double own_error(const struct chain_bench *b)
 {
 	static double ground[DENSER * (SAMPLES - 1) + 1], floors[ROW_FLOORS][POUND_FLOOR_MEASURES],

@@ -1,4 +1,4 @@
-/* bench_indices.c - rows about the statistics: what the indices of one output take. */
+/* bench_indices.c - benchmarks of the statistics: cost of the indices of one output. */
 #include "tests/long/bench.h"
 
 #include <stdlib.h>
@@ -47,7 +47,7 @@ static void plain(void *of)
 	pound_plain_indices(&r->values, (struct pound_resampling){1, 1000}, r->scratch, &r->indices);
 }
 
-/* Four inputs: every column, set and curve; the plain protocol alone; the same of a large design. */
+/* Four inputs: every column, set and curve; the plain protocol only; every column for a large design. */
 void bench_indices(void)
 {
 	static struct reduction few, one, many;

@@ -1,5 +1,5 @@
-/* bench_march.c - rows about the march itself, on the reference scene: against the plain loop, by lanes, law and
- * in other scenes. */
+/* bench_march.c - benchmarks of the exact solver on the reference scene: against the plain loop, by lanes, by law,
+ * and in other scenes. */
 #include "tests/long/bench.h"
 
 #include <math.h>
@@ -17,9 +17,9 @@
 
 enum {
 	SIGNALS = 1000,
-	LOOPED = 50,  /* of them through the plain loop */
-	OTHERS = 100, /* of them in other scenes */
-	REPEATS = 9,  /* the host is seldom quiet for long */
+	LOOPED = 50,  /* number of signals through the plain loop */
+	OTHERS = 100, /* number of signals in other scenes */
+	REPEATS = 9,  /* other programs often disturb a measurement */
 };
 
 static const char reference[] =
@@ -31,7 +31,7 @@ static const char reference[] =
 /* ---- batches of tasks ---- */
 
 struct batch {
-	int n, lanes; /* lanes 0: the widest there are */
+	int n, lanes; /* lanes 0: the widest available */
 	struct pound_task *tasks;
 	struct pound_task_result *results;
 };
@@ -77,9 +77,9 @@ static double batch_samples(const struct batch *batch)
 	return (double)batch->n * (batch->tasks[0].n_samples - 1);
 }
 
-/* Signals of an excitation, one behind the other.
+/* Signals of an excitation, one after another.
  *
- * Given    n_samples  of one
+ * Given    n_samples  of one signal
  */
 static void signals_make(const struct pound_excitation *e, int n_signals, int n_samples, double *ground)
 {
@@ -96,7 +96,7 @@ static void signals_make(const struct pound_excitation *e, int n_signals, int n_
 	}
 }
 
-/* A task for each signal of a scene, all in one piece of ground motion that the caller frees. */
+/* A task for each signal of a scene, with all ground motions in one array that the caller frees. */
 static struct batch scene_batch(const struct pound_scene *scene, double **ground)
 {
 	const struct pound_excitation *e = &scene->excitation;
@@ -121,7 +121,7 @@ static struct batch scene_batch(const struct pound_scene *scene, double **ground
 struct loop {
 	const char *name;
 	struct baseline_result (*run)(const struct pound_task *task, int steps);
-	int steps; /* from a sample to the next */
+	int steps; /* steps per sample */
 	const struct batch *batch;
 	double impulse[LOOPED];
 };
@@ -149,7 +149,7 @@ static double impulse_error(const double impulse[static LOOPED], const struct ba
 	return 0.5 * (errors[LOOPED / 2 - 1] + errors[LOOPED / 2]);
 }
 
-/* The error of the event solver by its own answer to the same ground motion given at twice as many samples. */
+/* The error of the event solver, estimated by its result for the same ground motion with twice as many samples. */
 static double own_error(const struct batch *exact)
 {
 	int n = exact->tasks[0].n_samples, finer = 2 * n - 1;
@@ -173,7 +173,7 @@ static double own_error(const struct batch *exact)
 	return error;
 }
 
-/* The error of the event solver, or of the oracle where that is larger, by an integrator that shares nothing with it. */
+/* The error of the event solver, or of the oracle if larger, by comparison with an independent integrator. */
 static double oracle_error(const struct pound_scene *scene, const struct batch *exact)
 {
 	const struct oracle_method method = {.radians = 0.005, .located = true};
@@ -205,7 +205,7 @@ static void event_rows(const struct pound_scene *scene, const struct batch *exac
 	                               .met = other < 1e-9});
 }
 
-/* The reference scene by the event solver and by central differences: time of a run, error of its largest impulse. */
+/* The reference scene by the event solver and by central differences: time of a run, error of the largest impulse. */
 void bench_reference(void)
 {
 	struct pound_study *study = bench_study(reference);
@@ -244,9 +244,9 @@ void bench_reference(void)
 	study_free(study);
 }
 
-/* ---- the kernel by itself ---- */
+/* ---- the kernel ---- */
 
-/* Time of a sample of two bodies always separated, of a sample with contacts, and what a contact adds, by lanes. */
+/* Time of a sample of two bodies always separated, of a sample with contacts, and the additional time of a contact, by lanes. */
 static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 {
 	static const int widths[] = {1, 4, 8};
@@ -264,7 +264,7 @@ static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 		const struct bench_job *with = &jobs[2 * w], *without = &jobs[2 * w + 1];
 		const struct {
 			const char *what;
-			double of, one; /* at these lanes, at one */
+			double of, one; /* with these lanes, with one lane */
 		} rows[] = {
 		    {"a sample without contact", without->seconds / samples, jobs[1].seconds / samples},
 		    {"a sample in all", with->seconds / samples, jobs[0].seconds / samples},
@@ -282,7 +282,7 @@ static void lanes_rows(const struct batch *pounding, const struct batch *apart)
 	}
 }
 
-/* Time of a run for every law, with the yield displacement at half of what each body reaches alone. */
+/* Time of a run for every law, with the yield displacement at half of the largest displacement without contact. */
 static void law_rows(const struct batch *linear, const struct batch *apart)
 {
 	enum { LAWS = SPECIMEN_LAWS };
@@ -309,7 +309,7 @@ static void law_rows(const struct batch *linear, const struct batch *apart)
 	}
 }
 
-/* the reference scene with something else of it */
+/* the reference scene with one change */
 struct variant {
 	const char *what;
 	double stiffness_ratio, restitution;
@@ -341,7 +341,7 @@ static struct batch variant_batch(const struct variant *v, const struct pound_sc
 	return batch;
 }
 
-/* Time of a run as the contact grows stiffer, as it ends otherwise, and of bodies for which a sample is longer. */
+/* Time of a run with stiffer contacts, without restitution or tension, without contact, and with faster bodies. */
 static void variant_rows(const struct pound_scene *scene, const struct batch *like)
 {
 	static const char goal[] = "at most 3";
@@ -405,7 +405,7 @@ static void signal_rows(const struct pound_excitation *e)
 	free(motions.ground);
 }
 
-/* The reference scene through the march by lanes, law and in other scenes, and the making of its ground motions. */
+/* The reference scene through the exact solver by lanes, by law and in other scenes, and the generation of ground motions. */
 void bench_kernel(void)
 {
 	struct pound_study *study = bench_study(reference);

@@ -1,4 +1,4 @@
-/* bench_separation.c - what a gap curve costs beside its runs without contact, and outputs beside the runs that have them already. */
+/* bench_separation.c - cost of a gap curve relative to its runs without contact, and of outputs relative to their runs. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -57,7 +57,7 @@ void bench_separation(void)
 	}
 }
 
-/* What outputs of a pair cost that take runs of their own; what is not asked for is not run. */
+/* Cost of outputs of a pair that need additional runs; runs that no output needs are left out. */
 void bench_outputs(void)
 {
 	static const struct {

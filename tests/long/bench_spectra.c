@@ -1,4 +1,4 @@
-/* bench_spectra.c - rows about floor spectra: of one signal, and what they cost the studies that ask for them. */
+/* bench_spectra.c - benchmarks of floor spectra: of one signal, and their cost in studies. */
 #include "tests/long/bench.h"
 
 #include <stdlib.h>
@@ -95,7 +95,7 @@ static void study_run(void *of)
 	pound_run_free(run);
 }
 
-/* The blocks alone: reductions are the same for every output. */
+/* The blocks only: reductions are the same for every output. */
 static void studies(void)
 {
 	struct pound_study *without = bench_study(SENSITIVITY("\"outputs\": [\"impulse\"]"));

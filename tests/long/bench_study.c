@@ -1,4 +1,4 @@
-/* bench_study.c - rows about whole studies: the paper's campaign, threads, and what grows. */
+/* bench_study.c - benchmarks of whole studies: the paper's campaign, threads, and growth of the cost. */
 #include "tests/long/bench.h"
 
 #include <pthread.h>
@@ -45,7 +45,7 @@ static void pool_run(struct pool *pool, int threads)
 		pthread_join(thread[w], NULL);
 }
 
-/* what a study took */
+/* cost of a study */
 struct cost {
 	double wall, cpu, cpu_reductions; /* [s] */
 	double memory;                    /* peak of the process [B] */
@@ -88,7 +88,7 @@ static struct cost study_cost(const struct pound_study *study, int threads)
 	return cost;
 }
 
-/* The same in a process of its own, whose memory is its own. */
+/* The same in a separate process, to measure its memory. */
 static struct cost study_cost_forked(const struct pound_study *study, int threads)
 {
 	struct cost cost;
@@ -146,7 +146,7 @@ static void campaign_rows(const struct cost *cost, int rows)
 	                       .to = "a run"});
 }
 
-/* The paper's campaign with `rows` rows, and with twenty by one thread and by two. */
+/* The paper's campaign with `rows` rows, and with twenty rows by one thread and by two. */
 void bench_campaign(int rows)
 {
 	struct pound_study *study = bench_study(example_text("paper"));
@@ -193,7 +193,7 @@ static const char sensitivity[] =
     "0.6499, \"max\": "
     "0.6501}}], \"design\": {\"rows\": 700, \"signals\": \"independent\"}}";
 
-/* a study and its runs with pounding */
+/* a study and its number of runs with pounding */
 struct document {
 	const char *text;
 	int64_t runs;
@@ -207,7 +207,7 @@ static void document_run(void *of)
 	study_free(study);
 }
 
-/* A response study of many signals beside a sensitivity study of the same scene, which records two outputs of a run. */
+/* A response study of many signals against a sensitivity study of the same scene, which records two outputs of a run. */
 void bench_responses(void)
 {
 	struct document documents[] = {{response, 0}, {sensitivity, 0}};
@@ -224,12 +224,12 @@ void bench_responses(void)
 	                               .met = whole / part <= 2});
 }
 
-/* ---- what grows ---- */
+/* ---- growth of the cost ---- */
 
 struct growth {
 	const char *what;
 	int rows, signals;
-	double cycles; /* of the excitation: its duration */
+	double cycles; /* duration of the excitation */
 };
 
 static void growth_run(void *of)
@@ -243,7 +243,7 @@ static void growth_run(void *of)
 	study_free(study);
 }
 
-/* The paper's study of linear oscillators, with n, the duration and the number of signals doubled and doubled again. */
+/* The paper's study of linear oscillators, with n, the duration and the number of signals doubled twice. */
 void bench_growth(void)
 {
 	struct growth growths[] = {
@@ -261,7 +261,7 @@ void bench_growth(void)
 		jobs[j] = (struct bench_job){.run = growth_run, .of = &growths[j]};
 	bench_jobs(jobs, GROWTHS, REPEATS);
 	for (int j = 0; j < GROWTHS; j++) {
-		// the doubled ones come in pairs behind the first
+		// the doubled studies follow in pairs after the first
 		const struct bench_job *half = &jobs[j == 0 ? 0 : j % 2 ? 0 : j - 1];
 		double ratio = jobs[j].seconds / half->seconds;
 		bench_print((struct bench_row){.what = bench_text("study of linear oscillators, %s", growths[j].what),

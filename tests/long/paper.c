@@ -1,8 +1,8 @@
-/* paper.c - the findings of the paper one by one, over the duration of the motions and with and without their noise.
+/* paper.c - the findings of the paper one by one, for several durations of the motions, with and without their noise.
  *
- *   paper [ROWS]     n of the campaigns with the noise, 1000 as the paper has it; those without have twice as many
+ *   paper [ROWS]     n of the campaigns with noise, 1000 as in the paper; those without noise have twice as many
  *
- * The paper holds f_e T fixed and does not give it, and its indices hold the noise of five signals.  Prints markdown. */
+ * The paper keeps f_e T fixed without giving it, and its indices include the noise of five signals.  Prints Markdown. */
 #include "tests/long/paper_campaign.h"
 
 #include <stdio.h>
@@ -18,7 +18,7 @@ static const char *const effect_names[EFFECTS] = {"amplification", "impulse"};
 
 static struct campaign campaigns[NOISES][DURATIONS];
 
-/* The head of a table: the texts between bars, then a column for each campaign if wanted. */
+/* The header of a table: the texts between bars, then a column for each campaign if requested. */
 static void head(const char *texts, bool each_campaign)
 {
 	int columns = 1;
@@ -53,7 +53,7 @@ static void judged(void)
 			printf("- %s: \"%s\"\n", findings[j].name, findings[j].sentence);
 }
 
-/* Place of input j among the values of indices, 0 for the largest. */
+/* Rank of input j by its index, 0 for the largest. */
 static int place(const struct pound_estimate *index, int j)
 {
 	int larger = 0;
@@ -62,7 +62,7 @@ static int place(const struct pound_estimate *index, int j)
 	return larger;
 }
 
-/* In how many of the 24 cells an input's total is at a place, whatever the intervals say. */
+/* The number of the 24 cells in which an input's total has a rank, regardless of the intervals. */
 static void places(void)
 {
 	static const struct {

@@ -64,7 +64,7 @@ static void pool_run(struct pool *pool, int n_workers)
 
 /* ---- reading ---- */
 
-// the study's output that is the amplification depends on the law
+// which output is the amplification depends on the law
 static int column(enum effect effect, int law)
 {
 	return effect == IMPULSE ? 2 : law == 0 ? 0 : 1;
@@ -90,7 +90,7 @@ static void indices_read(const struct pound_result *result, struct campaign *int
 			}
 }
 
-/* Mean and deviation of a sample, with 95 % intervals of large samples; NAN: too few. */
+/* Mean and standard deviation of a sample, with 95 % intervals for large samples; NAN: too few. */
 enum { SAMPLE_LEAST = 10 };
 
 struct moments {
@@ -114,13 +114,13 @@ static struct moments moments_of(const double *y, int n)
 		fourth += square * square / n;
 	}
 	double deviation = sqrt(second);
-	/* the variance of the sample variance, and by it that of the deviation */
+	/* variance of the sample variance, and from it the error of the standard deviation */
 	double error = sqrt((fourth - second * second) / n) / (2 * deviation);
 	return (struct moments){within(mean, quantile * deviation / sqrt(n)),
 	                        within(deviation, quantile * error)};
 }
 
-/* Of the impulse at f_1 = 2 Hz, over its mean, where f_2 is from `near` to `far` away from f_1. */
+/* Moments of the impulse at f_1 = 2 Hz, relative to its mean, for f_2 at a distance from f_1 within `away`. */
 static struct moments beside(struct pound_run *run, int law, const struct pound_indices *impulse,
                              const double away[2])
 {
@@ -155,7 +155,7 @@ static void scatter_read(struct pound_run *run, const struct pound_result *resul
 	for (int law = 0; law < LAWS; law++) {
 		const struct pound_indices *x = &result->cells[cell(law, AT_2_HZ)].indices[column(IMPULSE, law)];
 		struct moments at = beside(run, law, x, equal), off = beside(run, law, x, aside);
-		/* below 0.1 plastic contacts last long, and their impulse holds the bodies' pushing on each other */
+		/* below 0.1 plastic contacts last long, and their impulse includes the force that presses the bodies together */
 		struct pound_estimate low = at_eps(x, 0.2), high = at_eps(x, 0.9);
 		evidence->scatter[law] =
 		    (struct scatter){at.mean,

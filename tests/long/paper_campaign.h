@@ -1,4 +1,4 @@
-/* paper_campaign.h - the paper's campaign, 24 cells of six frequencies f_1 by four laws, run and read. */
+/* paper_campaign.h - the paper's campaign: 24 cells of six frequencies f_1 and four laws, its runs and its evidence. */
 #ifndef PAPER_CAMPAIGN_H
 #define PAPER_CAMPAIGN_H
 
@@ -18,7 +18,7 @@ struct campaign {
 	double noise_share[EFFECTS][LAWS][FREQUENCIES];
 };
 
-/* The example study `paper` by a plan, on all cores; progress goes to stderr.  Ends the program when it fails. */
+/* Runs the example study `paper` with the settings of a plan, on all cores; progress goes to stderr.  Exits on failure. */
 void campaign_run(const struct campaign_plan *plan, struct campaign *campaign);
 
 #endif

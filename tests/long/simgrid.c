@@ -1,8 +1,8 @@
 /* simgrid.c - a study on up to 1,000 threads of a cluster, simulated by SimGrid: `make simgrid`.
  *
- * Block times are those of the paper's campaign, run here; 10,000 blocks are of these times in turn.  A server hands out blocks as
- * schema/message/coordinator.c does, two ahead for each thread, and takes them back one after the other.  Nodes have 10 Gb/s and 50 us;
- * a block's result has 40 kB, and takes the server as long as soak_limits measures.
+ * Block times are measured here in runs of the paper's campaign; 10,000 blocks repeat these times.  A server assigns
+ * blocks as schema/message/coordinator.c does, two ahead for each thread, and receives results one at a time.  Nodes
+ * have 10 Gb/s and 50 us; a block's result has 40 kB, and takes the server the time that soak_limits measures.
  *
  *   efficiency = sum of block times / (threads * time from the first block to the last)
  *
@@ -29,16 +29,16 @@
 enum { TIMED = 200, BLOCKS = 10000, AHEAD = 2, BLOCK_BYTES = 40000, HEAD_BYTES = 32, FLOPS = 1000000000 };
 
 static const int thread_counts[] = {64, 256, 512, 1000};
-static const double server_us[] = {146, 237}; // a block, by one group and by four: make soak T=worker_limits
+static const double server_us[] = {146, 237}; // per block, 1 and 4 groups: make soak T=worker_limits
 
 static double block_s[TIMED];
 
-/* what a simulation has; its actors run one at a time */
+/* state of a simulation; its actors run one at a time */
 static struct {
 	int n_threads, handed_out, done;
-	double cost_s;      /* of the server, for a block */
-	double work_s;      /* of all blocks */
-	double busy_s, end; /* of the server; when the last block was taken back */
+	double cost_s;      /* server time per block */
+	double work_s;      /* total time of all blocks */
+	double busy_s, end; /* busy time of the server; time at which the last result was received */
 } world;
 
 static double cpu_now(void)
@@ -55,7 +55,7 @@ static void time_blocks(void)
 	struct pound_study *study = study_from_json(text, strlen(text), &problems);
 	struct pound_run *run = study ? pound_run_create(study, 1) : NULL;
 	assert(run);
-	// all over the design, as blocks of an end of it may be alike
+	// from the whole design, as consecutive blocks may be alike
 	const int n = pound_run_blocks(run);
 	for (int k = 0; k < TIMED; k++) {
 		const double start = cpu_now();
@@ -79,12 +79,12 @@ static void worker(int argc, char **argv)
 	const int thread = atoi(argv[1]);
 	(void)argc;
 	sg_mailbox_set_receiver(
-	    sg_mailbox_get_name(inbox(thread))); // bytes arrive before they are asked for, as by a socket
+	    sg_mailbox_get_name(inbox(thread))); // bytes arrive before they are requested, as through a socket
 	for (;;) {
 		const double *s = sg_mailbox_get(inbox(thread));
 		if (*s < 0)
 			return;
-		sg_actor_sleep_for(*s); // a core of its own
+		sg_actor_sleep_for(*s); // each thread has its own core
 		int *number = malloc(sizeof *number);
 		assert(number);
 		*number = thread;
@@ -92,7 +92,7 @@ static void worker(int argc, char **argv)
 	}
 }
 
-/* Hands a thread its next block, or the end. */
+/* Sends a thread its next block, or the end. */
 static void hand(int thread)
 {
 	static double none = -1;
@@ -122,7 +122,7 @@ static void server(int argc, char **argv)
 	world.end = simgrid_get_clock();
 }
 
-/* A cluster of a server and so many nodes, in a file that SimGrid reads. */
+/* A cluster of a server and a number of nodes, in a file that SimGrid reads. */
 static void platform(int nodes)
 {
 	char name[] = "/tmp/pound-simgrid-XXXXXX.xml";
@@ -138,7 +138,7 @@ static void platform(int nodes)
 	unlink(name);
 }
 
-/* One simulation, in a process of its own as SimGrid has one a process. */
+/* One simulation in a separate process, as SimGrid allows one per process. */
 static void simulate(int n_threads, double cost_us, int argc, char **argv)
 {
 	simgrid_init(&argc, argv);

@@ -1,4 +1,4 @@
-/* How near the estimates of validate_only are: every example, and every solver, is run and compared. */
+/* Accuracy of the estimates of validate_only: every example, and every solver, is run and compared. */
 #include <math.h>
 #include <string.h>
 
@@ -30,12 +30,12 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		static struct problems problems;
 		char id[17], sql[256];
 		struct pound_study *whole = study_from_json(examples[i].text, strlen(examples[i].text), &problems);
-		if (!whole) // a design alone
+		if (!whole) // a design only
 			continue;
 		study_free(whole);
 		double cpu_s = validated(service, examples[i].text, "estimated_cpu_s");
 		double bytes = validated(service, examples[i].text, "estimated_bytes");
-		if (cpu_s > 20) // the paper's
+		if (cpu_s > 20) // the paper's campaign
 			continue;
 		service_submit(service, examples[i].text, id);
 		assert_true(service_wait(service, id, "succeeded", 0));
@@ -49,7 +49,7 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 		double took_bytes = (double)service_number(service, sql);
 		check_report("%-24s %8.3g s estimated, %8.3g taken: %5.2f; %8.3g bytes estimated, %8.3g taken: %5.2f",
 		             examples[i].name, cpu_s, took_s, cpu_s / took_s, bytes, took_bytes, bytes / took_bytes);
-		// below 10 ms the time is the clock's
+		// below 10 ms the clock has no resolution
 		late = took_s > 0.01 ? fmax(late, took_s / cpu_s) : late;
 		early = took_s > 0.01 ? fmax(early, cpu_s / took_s) : early;
 		bytes_off = fmax(bytes_off, fmax(bytes / took_bytes, took_bytes / bytes));
@@ -58,7 +58,8 @@ static void an_estimate_is_near_what_a_study_takes(void **state)
 	}
 	check_report("at most %.1f times the time estimated, at least 1/%.1f of it; bytes off by %.1f", late,
 	             early, bytes_off);
-	// within two where the units were measured; others may be twice as slow, and newer ones with more lanes take a quarter
+	// within two on the machine that the units were measured on; others may be twice as slow, newer ones with more
+	// lanes take 1/4
 	assert_true(late < 4 && early < 8 && bytes_off < 2);
 }
 

@@ -1,6 +1,6 @@
 /* The server under many clients, slow clients and long use; minutes.  make soak, SOAK seconds for each test.
  *
- * Latencies are of this machine, whatever else it does; what is asserted is meant for one that is quiet. */
+ * Latencies include the other load of this machine; the limits assume that there is none. */
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
@@ -17,7 +17,7 @@
 
 /* ---- slow clients ---- */
 
-#define FRESH_S 0.2 /* between two requests of others */
+#define FRESH_S 0.2 /* time between two requests of other clients */
 
 static int open_files(const struct service *service)
 {
@@ -32,10 +32,10 @@ static int open_files(const struct service *service)
 	return n;
 }
 
-/* A client of an attack goes on, and comes again when it was closed; whether it is a new one. */
+/* An attacking client sends again, and reconnects if its connection was closed; whether it reconnected. */
 static bool pester(const struct service *service, int *s, const char *first, const char *then, bool reads)
 {
-	const int window = 2048; // of those who do not read
+	const int window = 2048; // receive window of clients that do not read
 	ssize_t sent = *s < 0 ? -1 : send(*s, then, strlen(then), MSG_NOSIGNAL | MSG_DONTWAIT);
 	char one;
 	if (*s >= 0 && ((sent < 0 && errno != EAGAIN) || (reads && recv(*s, &one, 1, MSG_DONTWAIT) == 0))) {
@@ -131,7 +131,7 @@ static void *ask_in_thread(void *of)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wformat-nonliteral"
 #pragma GCC diagnostic ignored "-Wformat-extra-args"
-		// mostly the cheap ones
+		// mostly the cheap paths
 		snprintf(path, sizeof path, paths[i % 100 ? i % 2 : 2 + i / 100 % 3], asker->id);
 #pragma GCC diagnostic pop
 		raw_send(s, bytes,
@@ -164,7 +164,7 @@ static void long_use(const struct service *service, int requests, int studies, i
 		raw_send(s, bytes, strlen(bytes));
 		char one;
 		recv(s, &one, 1, 0);
-		close(s); // the rest is not read
+		close(s); // the answer is not read further
 	}
 	assert_true(studies == 0 || service_wait(service, last, "succeeded", 0));
 	for (int i = 0; i < ASKERS; i++) {
@@ -185,7 +185,7 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	    aborted = requests / 1000;
 	service_submit(service, study, id);
 	free(study);
-	// warm: SQLite's pages
+	// first fill SQLite's page cache
 	long_use(service, requests / 4, 700, aborted / 4, id);
 	double resident = service_resident_mb(service);
 	int files = open_files(service);
@@ -207,7 +207,7 @@ static void a_million_requests_and_a_thousand_studies_leave_nothing_behind(void 
 	assert_true(about.st_size <= 64 << 20);
 }
 
-/* ---- what the time of an answer reveals ---- */
+/* ---- what the latency reveals ---- */
 
 enum { TIMINGS = 100000 };
 
@@ -217,7 +217,7 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Mean and variance of the mean of what is not among the slowest tenth, which other programs make. */
+/* Mean, and variance of the mean, without the slowest tenth, which other programs cause. */
 static void trimmed(double *seconds, double *mean, double *variance)
 {
 	int n = TIMINGS * 9 / 10;
@@ -249,9 +249,9 @@ static void the_time_a_wrong_token_takes_does_not_show_how_wrong_it_is(void **st
 	}
 	unsigned random = 1;
 	for (int n[2] = {0}; n[0] < TIMINGS || n[1] < TIMINGS;) {
-		// by chance, so that neither has a rhythm that the processor could learn
+		// in random order, so that the branch predictor cannot learn a pattern
 		int w = rand_r(&random) >> 4 & 1;
-		char sent[64]; // the same place for both
+		char sent[64]; // the same address for both
 		memcpy(sent, wrong[w], sizeof sent);
 		double start = latency_now();
 		const char *name = tokens_name(tokens, sent);

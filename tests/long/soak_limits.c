@@ -1,6 +1,8 @@
-/* What limits worker groups: blocks a second into the database, up to 1,024 threads whose blocks sleep, CPU time of blocks by ranks.
+/* Limits of worker groups: blocks per second into the database, up to 1,024 threads whose blocks sleep, CPU time of
+ * blocks by ranks.
  *
- * The sleeping workers are pound-worker and pound-worker-mpi with tests/support/instant_blocks.c in the place of a block. */
+ * The sleeping workers are pound-worker and pound-worker-mpi with tests/support/instant_blocks.c in place of the
+ * simulation. */
 #include <string.h>
 #include <unistd.h>
 
@@ -13,8 +15,8 @@
 enum {
 	ROWS = 60000,      /* of the study for sleeping blocks */
 	SIGNALS = 5,       /* 1,981 blocks */
-	BLOCK_US = 25000,  /* [us] what a block of the paper's campaign takes */
-	PAPER_ROWS = 4000, /* of the study for real ones */
+	BLOCK_US = 25000,  /* time of a block of the paper's campaign [us] */
+	PAPER_ROWS = 4000, /* of the study for real blocks */
 };
 
 static struct {
@@ -22,7 +24,7 @@ static struct {
 	char build[256];
 } world;
 
-/* CPU time of a server [s] without the threads that compute, which are nice. */
+/* CPU time of a server [s] without its computing threads, which have a positive nice value. */
 static double cpu_of_service(const struct service *service)
 {
 	char command[320];
@@ -37,8 +39,8 @@ static double cpu_of_service(const struct service *service)
 	return ticks / (double)sysconf(_SC_CLK_TCK);
 }
 
-/* Runs the study by sleeping workers until its blocks are stored; blocks a second, in the middle nine tenths,
- * and CPU time a block of the server [us]. */
+/* Runs the study by sleeping workers until its blocks are stored.  Returns blocks per second over the middle nine
+ * tenths; cpu_us is the server's CPU time per block [us]. */
 static double rate(const char *launcher, int n_groups, int block_us, int *n_blocks, double *cpu_us)
 {
 	char text[32], id[17], groups[16];
@@ -47,7 +49,7 @@ static double rate(const char *launcher, int n_groups, int block_us, int *n_bloc
 	setenv("POUND_BLOCK_US", text, 1);
 	const char *const settings[][2] = {{"POUNDD_LAUNCHER", launcher}, {"POUNDD_LAUNCHERS", groups}, {NULL}};
 	struct service *service = service_with(settings, 1);
-	// the groups connect during a study that is cancelled, so that all of them run the next one from its start
+	// the groups connect during a study that is canceled, so that all of them run the next one from its start
 	service_submit(service, world.document, id);
 	for (int connected = 0; connected < n_groups; usleep(5000)) {
 		char *log = program_file(service->log, &(size_t){0});
@@ -63,7 +65,7 @@ static double rate(const char *launcher, int n_groups, int block_us, int *n_bloc
 	usleep(500000);
 	const double cpu = cpu_of_service(service);
 	service_submit(service, world.document, id);
-	// progress in the table of studies: a look at blocks would be in the way of checkpoints of the WAL
+	// progress from the table of studies: reading blocks would delay checkpoints of the WAL
 	char sql[192];
 	snprintf(sql, sizeof sql, "SELECT runs_done = runs FROM study WHERE id = %lld", strtoll(id, NULL, 16));
 	while (!service_number(service, sql))
@@ -71,7 +73,7 @@ static double rate(const char *launcher, int n_groups, int block_us, int *n_bloc
 	const double spent = cpu_of_service(service) - cpu;
 	snprintf(sql, sizeof sql, "SELECT count(*) FROM block WHERE study = %lld", strtoll(id, NULL, 16));
 	*n_blocks = (int)service_number(service, sql);
-	// the middle nine tenths: the thread of the server, which is nice, may be the last for long
+	// the middle nine tenths: the server's own thread, with its nice value, may finish its last block late
 	double at[2];
 	for (int i = 0; i < 2; i++) {
 		snprintf(sql, sizeof sql,
@@ -149,7 +151,7 @@ static void worker_limits_of_ranks(void **state)
 		}
 }
 
-/* CPU time of a study [s], all processes. */
+/* CPU time of a study [s], of all processes. */
 static double cpu_of(const char *launcher)
 {
 	char file[] = "/tmp/pound-test-XXXXXX";

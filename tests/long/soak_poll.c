@@ -1,9 +1,9 @@
-/* A thousand clients that ask once a second, and a hundred open pages of browsers, while all workers compute.
+/* A thousand clients that poll once a second, and a hundred open browser pages, while all workers compute.
  *
- * An answer's time is from before the call that sends the question to when the kernel had the answer for the client
- * (SO_TIMESTAMPNS): the client's own delays do not count, those of the server and of the machine do.  What the study
- * loses is the share of the processors that answers take and what a run costs more meanwhile, so that other programs do
- * not count either; phases with the clients and without them take turns. */
+ * The latency of an answer is from before the send call until the kernel had the answer for the client
+ * (SO_TIMESTAMPNS): the client's own delays are excluded, those of the server and of the machine included.  The
+ * slowdown of the study is the share of the processors that answers take and the additional time of a run, so that
+ * other programs do not count; phases with and without clients alternate. */
 #include <dirent.h>
 #include <math.h>
 #include <string.h>
@@ -18,19 +18,19 @@
 
 enum {
 	POLLERS = 1000,
-	ROUNDS = 15, /* of a phase without the clients and one with them */
+	ROUNDS = 15, /* of one phase without clients and one with clients */
 };
 
 struct poller {
 	int socket;
-	double due, sent; /* [s] of the wall clock; sent: 0 while nothing is asked */
+	double due, sent; /* [s] wall clock; sent: 0 while no answer is awaited */
 };
 
 static struct poller pollers[POLLERS];
 
 static struct {
 	struct latencies answers;
-	int late, wrong; /* not answered after a second; closed, or not 200 */
+	int late, wrong; /* no answer within a second; closed, or not 200 */
 } polls;
 
 static int pollers_open(const struct service *service)
@@ -53,7 +53,7 @@ static void pollers_close(int epoll)
 	close(epoll);
 }
 
-/* Takes an answer, and the time at which the kernel had it. */
+/* Receives an answer, and the time at which the kernel had it. */
 static void hear(struct poller *poller)
 {
 	char answer[16384], about[256];
@@ -83,7 +83,7 @@ static void poll_all(int epoll, const char *id, double seconds)
 	int asked = 0;
 	for (int i = 0; i < POLLERS; i++)
 		pollers[i].due = start + (double)i / POLLERS;
-	// they are due one after the other, round and round; who still waits at the end is heard
+	// they are due in rotation; answers still awaited at the end are received
 	for (int next = 0;
 	     latency_now() < start + seconds || (asked > 0 && latency_now() < start + seconds + 5);) {
 		for (double t = latency_now(); t < start + seconds && pollers[next].due <= t;
@@ -104,7 +104,7 @@ static void poll_all(int epoll, const char *id, double seconds)
 	polls.late += asked;
 }
 
-/* What threads took: those that answer or commit, which unlike the workers are not nice, and the study's blocks. */
+/* Time used by threads: those that answer or commit, which unlike the workers have nice 0, and the study's blocks. */
 struct cost {
 	double answers_s, wall_s; /* [s] */
 	double runs, runs_s;      /* number, [s] */
@@ -119,7 +119,7 @@ static double answering_s(pid_t pid)
 	assert_non_null(tasks);
 	for (struct dirent *task = readdir(tasks); task; task = readdir(tasks)) {
 		snprintf(path, sizeof path, "/proc/%d/task/%.16s/stat", (int)pid, task->d_name);
-		FILE *file = task->d_name[0] == '.' ? NULL : fopen(path, "r"); // task/../stat is the whole process
+		FILE *file = task->d_name[0] == '.' ? NULL : fopen(path, "r"); // task/../stat: whole process
 		long user, system, nice;
 		if (file && fgets(line, sizeof line, file) &&
 		    sscanf(strrchr(line, ')'),
@@ -144,7 +144,7 @@ static struct cost cost_now(const struct service *service)
 	        1e-6 * (double)service_number(service, "SELECT cast(1e6 * sum(cpu_s) AS INTEGER) FROM block")};
 }
 
-/* What a phase took, which began with what `before` says. */
+/* The cost of a phase that began at the totals `before`. */
 static struct cost cost_since(const struct service *service, const struct cost *before)
 {
 	struct cost now = cost_now(service);
@@ -163,7 +163,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	struct service *service = *state;
 	double dearer[ROUNDS], seconds = latency_soak_s() / ROUNDS, answers_s = 0, wall_s = 0, commits_s = 0;
 	char *study = service_study(200000, 9, 1), id[17];
-	// long ground motions: there is to be work for all the time, however fast a run is
+	// long ground motions: the study must last for the whole test, however fast a run is
 	char *cycles = strstr(study, "\"cycles\": 10");
 	assert_non_null(cycles);
 	memcpy(cycles, "\"cycles\": 99", 12);
@@ -179,7 +179,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 		poll_all(epoll, id, seconds);
 		struct cost with = cost_since(service, &start);
 		dearer[round] = with.runs_s / with.runs / (without.runs_s / without.runs);
-		// blocks are committed by such threads, too, whether anybody asks or not
+		// blocks are committed by such threads, too, with or without clients
 		const double commits = without.answers_s / without.wall_s * with.wall_s;
 		commits_s += commits;
 		answers_s += with.answers_s - commits;
@@ -195,7 +195,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 	latency_report("of them while the machine was there", &polls.answers);
 	check_report("late %d, wrong %d; the machine was away for %.2f %% of %.0f s", polls.late, polls.wrong,
 	             100 * host_pauses_share(), 2 * wall_s);
-	// half of the rounds lie between the quartiles: the median's standard error from them
+	// half of the rounds lie between the quartiles, from which follows the standard error of the median
 	double error = 1.25 * (dearer[3 * ROUNDS / 4] - dearer[ROUNDS / 4]) / 1.35 / sqrt(ROUNDS);
 	check_report("what the study loses: %.1f +- %.1f %%; answers take %.2f %% of the processors, commits "
 	             "%.2f %%, a run "
@@ -213,7 +213,7 @@ static void a_thousand_pollers_are_served_while_all_workers_are_busy(void **stat
 
 enum { PAGES = 100 };
 
-/* CPU time of the threads that answer and of the one that looks after those that wait: not of what a study needs by itself. */
+/* CPU time of the threads that answer and of the thread that watches waiting requests, without the study's own. */
 static double pages_s(pid_t pid)
 {
 	char path[64], name[32];
@@ -241,10 +241,11 @@ static double pages_s(pid_t pid)
 	return sum;
 }
 
-/* A page as client/page/page.js asks: a study's waits for a change and rests a second, the list rests three. */
+/* A page with the requests of client/page/page.js: a study's page waits for a change, then pauses for 1 s; the list
+ * pauses 3 s. */
 struct page {
 	int socket;
-	double due; /* [s] of the wall clock; 0 while an answer is awaited */
+	double due; /* [s] wall clock; 0 while an answer is awaited */
 	char tag[80];
 };
 
@@ -259,7 +260,7 @@ static void page_ask(struct page *page, const char *id)
 	page->due = 0;
 }
 
-/* Reads an answer, of several segments maybe; returns its status. */
+/* Reads an answer, possibly in several segments; returns its status. */
 static int page_read(struct page *page, double pause)
 {
 	static char answer[1 << 16];
@@ -281,7 +282,7 @@ static int page_read(struct page *page, double pause)
 	return atoi(answer + 9);
 }
 
-/* Opens 100 pages for a time; id NULL: of the list.  Returns the part of a core that answering them takes. */
+/* Opens 100 pages for some time; id NULL: pages of the list.  Returns the fraction of a core that answering them takes. */
 static double pages_cost(const struct service *service, const char *id, double seconds)
 {
 	static struct page pages[PAGES];
@@ -293,7 +294,7 @@ static double pages_cost(const struct service *service, const char *id, double s
 		struct epoll_event event = {.events = EPOLLIN, .data.u32 = (uint32_t)i};
 		assert_int_equal(epoll_ctl(epoll, EPOLL_CTL_ADD, pages[i].socket, &event), 0);
 	}
-	double before = 0, counted = 0; // from the second round on: a page is opened once
+	double before = 0, counted = 0; // from the second round on: each page is opened once
 	for (double now = start; now < start + pause + seconds; now = latency_now()) {
 		if (counted == 0 && now >= start + pause) {
 			before = pages_s(service->pid);
@@ -324,7 +325,7 @@ static void a_hundred_open_pages_take_two_percent_of_a_core_while_a_study_runs(v
 {
 	struct service *service = *state;
 	char *study = service_study(200000, 9, 1), id[17];
-	for (int i = 0; i < 30; i++) // more than one page of the list has
+	for (int i = 0; i < 30; i++) // more than one page of the list
 		service_submit(service, study, id);
 	double of_list = pages_cost(service, NULL, latency_soak_s() / 2);
 	char *first =

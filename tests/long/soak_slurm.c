@@ -1,4 +1,5 @@
-/* A real Slurm of four nodes on this machine: worker groups by srun and sbatch, ranks of MPI, and a node that loses its power.
+/* A real Slurm cluster of four nodes on this machine: worker groups by srun and sbatch, MPI ranks, and a node that
+ * loses power.
  *
  * Skipped without slurmctld, slurmd, munge and root. */
 #include <string.h>
@@ -11,10 +12,10 @@
 #include "tests/support/service.h"
 
 enum {
-	ROWS = 90000, /* of the study: 12 s of one core */
+	ROWS = 90000, /* of the study: 12 s on one core */
 	SIGNALS = 5,
 	RUNS = 5 * SIGNALS * ROWS,
-	START_S = 60, /* until the nodes are idle, or the groups connected */
+	START_S = 60, /* until the nodes are idle or the groups connected */
 	LINE = 640,
 };
 
@@ -22,14 +23,14 @@ enum {
 
 static struct {
 	char directory[64], study[96], checkpoint[96], out[96], err[96];
-	char *build; /* absolute: jobs run elsewhere */
+	char *build; /* absolute: jobs run in other directories */
 	char launcher[LINE], ranks[LINE];
 	char *document;
 	struct service_bytes reference;
 	int n_blocks;
 } world;
 
-/* Runs a command; its status. */
+/* Runs a command; returns its status. */
 static int shell(const char *format, const char *argument, int number)
 {
 	char line[LINE];
@@ -68,7 +69,7 @@ static int setup(void **state)
 	const char *build = getenv("POUND_BUILD");
 	int n_more;
 	(void)state;
-	// not in /tmp, which every node has for itself
+	// not in /tmp, as every node has its own
 	strcpy(world.directory, "/var/tmp/pound-slurm-XXXXXX");
 	assert_non_null(mkdtemp(world.directory));
 	world.build = realpath(build ? build : "build/release", NULL);
@@ -106,7 +107,7 @@ static int teardown(void **state)
 	return shell("rm -r %s", world.directory, 0);
 }
 
-/* Waits until so many lines of the program's messages say that a group is connected. */
+/* Waits until a number of lines in the program's messages report a connected group. */
 static void connections_wait(const char *log, int n)
 {
 	const double start = groups_now();
@@ -124,14 +125,14 @@ static void connections_wait(const char *log, int n)
 static pid_t run_start(const char *launcher, const char *launchers)
 {
 	unlink(world.checkpoint);
-	unlink(world.err); // that of the run before has connections, too
+	unlink(world.err); // messages of an earlier run report connections, too
 	return program_start((const char *const[]){"pound", "run", "--threads", "1", "--launcher", launcher,
 	                                           "--launchers", launchers, "--checkpoint", world.checkpoint,
 	                                           world.study, NULL},
 	                     world.out, world.err);
 }
 
-/* Fails unless a run has the reference's bytes and a record for each block. */
+/* Fails unless a run has the reference's bytes and a record of each block. */
 static void run_check(const char *what, double start)
 {
 	int n_once, n_more;
@@ -147,13 +148,13 @@ static void run_check(const char *what, double start)
 	free(err);
 }
 
-/* Node 2 loses its power. */
+/* Node 2 loses power. */
 static void node_kill(void)
 {
 	assert_int_equal(shell("tests/support/slurm-cluster kill %s 2", world.directory, 0), 0);
 }
 
-/* Node 2 is there again, without the job that it had: Slurm would take it for running until SlurmdTimeout. */
+/* Node 2 is started again, without its job: Slurm would consider it running until SlurmdTimeout. */
 static void node_start(void)
 {
 	assert_int_equal(system("squeue -h -o %A | xargs -r scancel"), 0);
@@ -268,7 +269,7 @@ int main(int argc, char **argv)
 	                                   cmocka_unit_test(ranks_of_mpi_by_slurm)};
 	const char *wanted = getenv("T");
 	(void)argc;
-	// a cluster is started for nothing else
+	// no cluster is started for other tests
 	const int n = (int)(sizeof tests / sizeof tests[0]);
 	if (wanted && *wanted && !strstr(wanted, "slurm"))
 		return 0;

@@ -1,4 +1,4 @@
-/* Studies as fast as they are taken, until the queue is full; and one beyond all measure. */
+/* Studies submitted as fast as they are accepted, until the queue is full; and one beyond all limits. */
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -13,8 +13,8 @@ enum { SUBMITTERS = 16, QUEUE_MAX = 10000 };
 static struct submitter {
 	const struct service *service;
 	const char *study;
-	double until;               /* [s] of the wall clock, or until a study is refused */
-	struct latencies latencies; /* of studies accepted */
+	double until;               /* [s] wall clock, or until a study is refused */
+	struct latencies latencies; /* of accepted studies */
 	int refused;                /* 503 with Retry-After */
 	pthread_t thread;
 } submitters[SUBMITTERS];
@@ -42,7 +42,7 @@ static void *submit_in_thread(void *of)
 	return NULL;
 }
 
-/* What sixteen clients come to, until a time or until each was refused; how many were. */
+/* Sixteen clients submit until a time, or until each was refused; returns the number of refusals. */
 static int submit_all(const struct service *service, int rows, double until, struct latencies *all)
 {
 	char *study = service_study(rows, 1, 1);
@@ -77,7 +77,7 @@ static void a_hundred_studies_a_second_are_accepted_from_sixteen_clients(void **
 	             SUBMITTERS, seconds, all.n / seconds, (int)kept);
 	latency_report("  their answers", &all);
 	assert_true(all.n >= 100 * seconds);
-	assert_true(kept >= all.n && kept <= all.n + SUBMITTERS); // those whose answer was still on its way
+	assert_true(kept >= all.n && kept <= all.n + SUBMITTERS); // studies whose answer was still on its way
 	free(all.answers);
 	service_free(service);
 }
@@ -93,7 +93,7 @@ static void ten_thousand_queued_studies_are_all_it_takes_until_it_has_run_some(v
 	assert_int_equal(submit_all(service, 1000, INFINITY, &all), SUBMITTERS);
 	const int64_t queued = service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'");
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), all.n + 1);
-	// as many as may be at it at once look before any of them is in; a few have run since the first was refused
+	// concurrent submissions may all check before one is added; a few studies have run since the first was refused
 	assert_true(queued > QUEUE_MAX - QUEUE_MAX / 100 && queued < QUEUE_MAX + SUBMITTERS);
 	snprintf(path, sizeof path, "/v1/studies/%s/cancel", id);
 	double start = latency_now();
@@ -120,7 +120,7 @@ static void ten_thousand_queued_studies_are_all_it_takes_until_it_has_run_some(v
 
 static void a_study_of_a_trillion_runs_is_refused_in_no_time_and_no_memory(void **state)
 {
-	// 10 samples of a row for 8 inputs, 10^6 rows, 10^5 signals
+	// 10 samples per row for 8 inputs, 10^6 rows, 10^5 signals
 	static const char *const paths[] = {
 	    "contact/restitution",        "contact/stiffness_ratio",    "contact/gap_m",
 	    "oscillators/0/frequency_hz", "oscillators/1/frequency_hz", "oscillators/0/mass_kg",

@@ -1,4 +1,4 @@
-/* Valid studies drawn at random, and what each takes beside what is estimated before: a histogram of CPU time. */
+/* Valid studies at random, CPU time against the estimate: a histogram. */
 #include <math.h>
 
 #include "schema/study/cost.h"
@@ -8,17 +8,18 @@
 
 enum { STUDIES = 500, BINS = 13 };
 
-/* [s] estimated, of one study; what counts as nothing; and what is stopped when it is over its upper estimate, too */
+/* [s] largest estimate of a study; times below LEAST count as equal; a study is stopped if it exceeds LONG and its
+ * upper estimate */
 static const double CPU_MOST = 1.5, LEAST = 0.003, LONG = 6;
 
 static const double FACTOR = 3;
 
-/* What is known of a study's contacts. */
+/* Groups of studies by their contacts. */
 static const char *const groups[] = {"pairs in linear contact", "rows without contact", "chains with gaps",
                                      "chains that touch at rest"};
 
-/* Of each hundred of all: so many within the factor at least; more than three times as long as estimated, and longer than the upper
- * estimate, at most: the few runs that a study is tried with may be of its shorter ones. */
+/* Per cent of all studies: the least within the factor; the most that take more than three times the estimate; the
+ * most that also exceed the upper estimate, as the few trial runs of a study may be among its shorter ones. */
 enum { GROUPS = sizeof groups / sizeof groups[0], NEAR_PERCENT = 97, UNDER_PERCENT = 1, HIGH_PERCENT = 3 };
 
 static int group_of(const struct pound_study *study)
@@ -29,7 +30,7 @@ static int group_of(const struct pound_study *study)
 	return !row && linear ? 0 : !contact->present ? 1 : contact->gap > 0 ? 2 : 3;
 }
 
-/* what was found of a group */
+/* results of a group */
 struct found {
 	int n, near, under, high;
 	double late, early;
@@ -47,7 +48,7 @@ static void valid_studies_take_what_is_estimated_before(void **state)
 		struct cost cost = cost_of(study, 1);
 		if (cost.cpu_s <= CPU_MOST) {
 			cost_try(&cost, study, NULL);
-			// what takes less than the clock can resolve is nothing
+			// times that the clock cannot resolve count as LEAST
 			const double s = fmax(valid_study_taken(study, fmax(LONG, 1.1 * cost.cpu_s_high)), LEAST),
 			             ratio = s / fmax(cost.cpu_s, LEAST);
 			const int bin = (int)floor(log2(ratio) + 0.5 * BINS);

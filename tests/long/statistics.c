@@ -1,10 +1,10 @@
-/* statistics.c - how good the indices are: errors, coverage and bias over many designs of functions with exact indices.
+/* statistics.c - quality of the indices: errors, coverage and bias over many designs of functions with exact indices.
  *
- *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise, growth, tails or signals; all of them when absent
+ *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise, growth, tails or signals; default: all
  *
- * 1. A job is one function in one setting; its seeds are computed one after the other, so that the numbers do not depend
- *    on how many threads there are.
- * 2. Models are run as a user's own are: pound_run_create, their outputs assigned, reduced.
+ * 1. A job is one function in one setting; its seeds are computed one after another, so the numbers do not depend on
+ *    the number of threads.
+ * 2. Functions are run as external models: pound_run_create, outputs assigned, reduced.
  * 3. Progress goes to stderr, Markdown tables to stdout. */
 #include "tests/long/statistics.h"
 
@@ -96,7 +96,7 @@ void statistics_score_indices(struct statistics_score *score, const struct funct
                               const struct pound_indices *indices, enum pound_index first,
                               enum pound_index total)
 {
-	// where a polynomial is the function itself, error and interval are both of rounding's size
+	// if a polynomial equals the function, error and interval are rounding errors
 	const double rounding = 1e-12;
 	double value[STATISTICS_INDEXES];
 	for (int k = 0; k < STATISTICS_INDEXES; k++) {

@@ -1,4 +1,4 @@
-/* statistics_designs.c - errors of S1 and ST beside the plain protocol and other packages on the same outputs, and the
+/* statistics_designs.c - errors of S1 and ST against the plain protocol and other packages on the same outputs, and
  * coverage of their intervals, by design and number of rows. */
 #include "tests/long/statistics.h"
 
@@ -11,12 +11,12 @@ enum {
 	JOBS_MAX = 200,
 	SIZES = 3,
 	RESAMPLES_FEW =
-	    200, /* behind intervals of the plain protocol with more than 1000 rows: their ends to a tenth */
+	    200, /* for intervals of the plain protocol with more than 1000 rows: ends within a tenth */
 };
 
 static const int sizes[SIZES] = {250, 1000, 4000};
 
-// what is compared: columns of a result, then the packages
+// compared estimators: columns of a result, then the packages
 enum { BEST, PLAIN, COLUMNS, ESTIMATORS = COLUMNS + 2 };
 
 static const struct {
@@ -78,7 +78,7 @@ static int rows_of(int design, int size)
 	return statistics_design(design, sizes[size], 0).rows;
 }
 
-/* Means over the functions of all errors, and of the ratios of both together the mean and the largest. */
+/* Means over the functions of all errors, and mean and largest of the ratios of S1 and ST together. */
 static void row_of_errors(const struct campaign *c, int design, int size)
 {
 	double error[2][ESTIMATORS] = {0}, ratio = 0.0, worst = 0.0;
@@ -154,7 +154,7 @@ static void ratios_table(const struct campaign *c)
 	}
 }
 
-/* Mean and least share of intervals that cover, over functions and inputs. */
+/* Mean and least coverage of intervals over functions and inputs. */
 static void coverage_cell(const struct campaign *c, int design, int size, int column, int total)
 {
 	double sum = 0.0, least = 1.0;
@@ -182,14 +182,14 @@ static void coverage_table(const struct campaign *c)
 		}
 }
 
-/* Prints, for every design and number of rows: root mean square errors in thousandths, over the inputs and then as means
- * over the functions; S1 and ST over S1_raw and ST_raw, both together, mean and worst, and then of every function; and the
- * share of 95 % intervals that cover the exact index, mean and least. */
+/* Prints, for every design and number of rows: root mean square errors in thousandths, over the inputs and then as
+ * means over the functions; the ratio of S1 and ST to S1_raw and ST_raw, both together, mean and worst, and then for
+ * every function; and the mean and the least fraction of 95 % intervals that cover the exact index. */
 void statistics_designs(int n_seeds)
 {
 	static struct campaign c;
 	c.n_seeds = n_seeds;
-	// the largest first, so that no thread is left with one at the end
+	// the largest first, so that no thread is left with a large job at the end
 	for (int size = SIZES - 1; size >= 0; size--)
 		for (int k = 0; statistics_function(k); k++)
 			for (int design = 0; pound_design_name(design); design++)

@@ -1,25 +1,25 @@
-/* statistics_functions.c - functions of four uniform variables for `make statistics`, beside those of functions.c, with
- * indices in closed form.
+/* statistics_functions.c - functions of four uniform variables for `make statistics`, besides those in functions.c,
+ * with indices in closed form.
  *
- * Terms without a variable in common add their variances; in a product of independent factors g_j with mean m_j and
- * mean square q_j a set u of factors explains prod_u (q_j - m_j^2) prod_others m_j^2, so that the products below follow
- * from two integrals each.  Every column of exact values is derived above its function. */
+ * Variances of terms without common variables add up; in a product of independent factors g_j with mean m_j and mean
+ * square q_j, a set u of factors explains prod_u (q_j - m_j^2) prod_others m_j^2, so the products below follow from
+ * two integrals each.  The exact values of each function are derived above it. */
 #include "tests/long/statistics.h"
 
 #include <math.h>
 
-/* The larger of two, and a product.
+/* The larger of two variables, plus a product.
  *
- *   V(max) = 1/18;  E(max | u1) = (1 + u1^2) / 2, of variance (1/5 - 1/9) / 4 = 1/45;  interaction 1/18 - 2/45 = 1/90
- *   V(u3 u4) = 1/9 - 1/16 = 7/144;  E(u3 u4 | u3) = u3 / 2, of variance 1/48;  interaction 1/144
- *   together V = 15/144:  S = (16/75, 16/75, 1/5, 1/5),  T = (8/25, 8/25, 4/15, 4/15)
+ *   V(max) = 1/18;  E(max | u1) = (1 + u1^2) / 2, with variance (1/5 - 1/9) / 4 = 1/45;  interaction 1/18 - 2/45 = 1/90
+ *   V(u3 u4) = 1/9 - 1/16 = 7/144;  E(u3 u4 | u3) = u3 / 2, with variance 1/48;  interaction 1/144
+ *   total V = 15/144:  S = (16/75, 16/75, 1/5, 1/5),  T = (8/25, 8/25, 4/15, 4/15)
  */
 static double maximum(const double *u)
 {
 	return fmax(u[0], u[1]) + u[2] * u[3];
 }
 
-/* A product of exponentials: skewed, so that few rows decide.
+/* A product of exponentials: skewed, so a few rows dominate the variance.
  *
  *   factors exp(c u), c = 3, 2, 1, 1/2:  m = (e^c - 1) / c,  q = (e^2c - 1) / (2c),  r = q / m^2
  *   S_j = (r_j - 1) / (prod r - 1),  T_j = (r_j - 1) prod_others r / (prod r - 1)
@@ -29,10 +29,10 @@ static double exponential(const double *u)
 	return exp(3.0 * u[0] + 2.0 * u[1] + u[2] + 0.5 * u[3]);
 }
 
-/* Waves shorter than a polynomial of low degree or a wide window can follow.
+/* Waves too short for a polynomial of low degree or for a wide smoothing window.
  *
- *   the mean square of a sine over whole periods is 1/2, its mean 0:
- *   sin(8 pi u1): 1/2;  2 sin(2 pi u2) sin(6 pi u3): 4 / 4 = 1, all of it interaction;  sqrt(6) u4: 6 / 12 = 1/2
+ *   a sine over whole periods has the mean 0 and the mean square 1/2:
+ *   sin(8 pi u1): 1/2;  2 sin(2 pi u2) sin(6 pi u3): 4 / 4 = 1, only interaction;  sqrt(6) u4: 6 / 12 = 1/2
  *   V = 2:  S = (1/4, 0, 0, 1/4),  T = (1/4, 1/2, 1/2, 1/4)
  */
 static double waves(const double *u)
@@ -40,9 +40,9 @@ static double waves(const double *u)
 	return sin(8.0 * M_PI * u[0]) + 2.0 * sin(2.0 * M_PI * u[1]) * sin(6.0 * M_PI * u[2]) + sqrt(6.0) * u[3];
 }
 
-/* A rare corner: one sample in a hundred is ten times what the others vary by.
+/* A rare corner: one sample in a hundred is larger by ten times the scale of the others.
  *
- *   10 [u1 > 0.9][u2 > 0.9], p = 1/10 each:  V = 100 (p^2 - p^4) = 0.99;  of u1 alone 100 p^2 (p - p^2) = 0.09, and so
+ *   10 [u1 > 0.9][u2 > 0.9], p = 1/10 each:  V = 100 (p^2 - p^4) = 0.99;  u1 alone: 100 p^2 (p - p^2) = 0.09, hence
  *   T_1 V = 0.9
  *   2 u3 + u4: 1/3 + 1/12;  V = 0.99 + 5/12 = 1.40666...
  */
@@ -51,16 +51,16 @@ static double corner(const double *u)
 	return (u[0] > 0.9 && u[1] > 0.9 ? 10.0 : 0.0) + 2.0 * u[2] + u[3];
 }
 
-/* Nearly additive, of very unequal inputs; the last two matter by a small interaction alone.
+/* Nearly additive, with very unequal inputs; the last two have only a small interaction.
  *
- *   4 u1: 16/12;  |2 u2 - 1|, uniform itself: 1/12;  (u3 - 1/2)(u4 - 1/2): 1/144, all of it interaction
+ *   4 u1: 16/12;  |2 u2 - 1|, which is uniform: 1/12;  (u3 - 1/2)(u4 - 1/2): 1/144, only interaction
  */
 static double unequal(const double *u)
 {
 	return 4.0 * u[0] + fabs(2.0 * u[1] - 1.0) + (u[2] - 0.5) * (u[3] - 0.5);
 }
 
-/* A window: the output jumps twice in the middle of one input's range, and once by less in another's.
+/* A window: the output jumps twice in one input's range, and once by less in another's.
  *
  *   [1/4 < u1 < 3/4]: 1/4;  u2: 1/12;  0.3 [u4 > 1/2]: 0.09 / 4;  no interaction, u3 without effect
  */
@@ -69,19 +69,19 @@ static double window(const double *u)
 	return (u[0] > 0.25 && u[0] < 0.75 ? 1.0 : 0.0) + u[1] + (u[3] > 0.5 ? 0.3 : 0.0);
 }
 
-/* A jump at an edge of the range, of one sample in twenty.
+/* A jump at an edge of the range, in one sample in twenty.
  *
  *   2 [u1 > 0.95] (1 + u2): m = 1/10, 3/2 and q - m^2 = 0.2 - 0.01, 1/12:
- *   of u1 alone 0.19 9/4 = 0.4275, of u2 alone 0.01 / 12, together 0.19 / 12;  u3: 1/12, u4 without effect
+ *   u1 alone 0.19 9/4 = 0.4275, u2 alone 0.01 / 12, interaction 0.19 / 12;  u3: 1/12, u4 without effect
  */
 static double edge(const double *u)
 {
 	return (u[0] > 0.95 ? 2.0 * (1.0 + u[1]) : 0.0) + u[2];
 }
 
-/* One input's twelve waves, of 21 rows each at n = 250.
+/* Twelve waves in one input's range, 21 rows each at n = 250.
  *
- *   sin(24 pi u1): 1/2;  u2: 1/12;  2 (u3 - 1/2)(u4 - 1/2): 4 / 144, all of it interaction
+ *   sin(24 pi u1): 1/2;  u2: 1/12;  2 (u3 - 1/2)(u4 - 1/2): 4 / 144, only interaction
  */
 static double sine(const double *u)
 {

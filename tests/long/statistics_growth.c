@@ -1,5 +1,5 @@
-/* statistics_growth.c - designs that grow until every interval of S1 and ST is narrow: what they spend, how large the
- * errors then are, and whether the intervals at the stop still cover. */
+/* statistics_growth.c - designs that grow until every interval of S1 and ST is narrow: runs used, errors, and
+ * coverage of the intervals at the stop. */
 #include "tests/long/statistics.h"
 
 #include <math.h>
@@ -10,15 +10,15 @@ enum { DESIGNS = 2, CELLS_MAX = 64, RUNS_MAX = 20000 };
 
 static const char *const designs[DESIGNS] = {"lhs", "sobol"};
 
-// wide enough for most designs to stop early, which is when looking again and again could deceive
+// wide enough for most designs to stop early, where repeated looks could bias the coverage
 static const double HALF_WIDTH = 0.05;
 
 struct cell {
 	const struct function *function;
 	int design;
 	double runs; /* sums over the seeds */
-	int narrow;  /* stopped because they were */
-	int decided; /* intervals of the index that decided, the widest, that cover */
+	int narrow;  /* stopped because intervals were narrow */
+	int decided; /* covering intervals of the deciding (widest) index */
 	struct statistics_score score;
 };
 
@@ -87,7 +87,7 @@ static void cell_print(const struct cell *cell)
 	              least_covered(cell), cell->decided / n, cell->narrow / n);
 }
 
-/* What all functions come to in one design: means. */
+/* Means over all functions for one design. */
 static void all_print(const struct campaign *c, int design)
 {
 	double runs = 0.0, error = 0.0, covered = 0.0, narrow = 0.0, decided = 0.0, least = 1.0;
@@ -107,9 +107,9 @@ static void all_print(const struct campaign *c, int design)
 	numbers_print(runs / n, error / n, covered / n, least, decided / n, narrow / n);
 }
 
-/* Prints, of designs that grow to a half width of 0.05 within 20,000 runs: mean runs, root mean square error of all eight
- * indices, coverage of the intervals at the stop (of one index the least), of the widest of them, which decided, and how
- * often they were narrow enough. */
+/* Prints, for designs that grow to a half width of 0.05 within 20,000 runs: mean runs, root mean square error of all
+ * eight indices, coverage of the intervals at the stop (of one index the least), coverage of the widest interval,
+ * which decided, and how often the intervals were narrow enough. */
 void statistics_growth(int n_seeds)
 {
 	static struct campaign c;

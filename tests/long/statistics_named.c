@@ -1,4 +1,4 @@
-/* statistics_named.c - errors of the estimators by name, as their formulas are, from the same number of runs. */
+/* statistics_named.c - errors of the named estimators, by their published formulas, from the same number of runs. */
 #include "tests/long/statistics.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ struct campaign {
 	struct cell cells[CELLS_MAX];
 };
 
-/* Outputs of all samples that any estimator may want, centred by the mean of those of A and B. */
+/* Outputs of all samples that any estimator may need, centered by the mean over A and B. */
 static void outputs_fill(const struct function *f, const double *x, int n, double *y)
 {
 	double mean = 0.0;
@@ -43,7 +43,7 @@ static void outputs_fill(const struct function *f, const double *x, int n, doubl
 		y[k] -= mean;
 }
 
-/* The rows that an estimator gets for the runs of ROWS rows of d + 2 samples; of nets a power of two. */
+/* The rows of an estimator for the runs of ROWS rows of d + 2 samples; a power of two for Sobol' sequences. */
 static int rows_of(const struct pound_estimator *e, int design, int rows)
 {
 	int wanted = e->order == POUND_ORDER_TOTAL ? rows : rows * (D + 2) / SAMPLES;

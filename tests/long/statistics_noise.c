@@ -1,4 +1,4 @@
-/* statistics_noise.c - bias, error and coverage of the indices of a random model, with its noise and without it: five
+/* statistics_noise.c - bias, error and coverage of the indices of a random model, with and without its noise: five
  * signals in every sample, each with noise as large as the variance of the mean response, 1000 rows. */
 #include "tests/long/statistics.h"
 
@@ -52,8 +52,8 @@ static void case_run(void *of, int k)
 		seed_run(c, k, (uint64_t)seed);
 }
 
-/* Prints the largest bias of an index, root mean square errors over the inputs, and coverage; the last column is the mean
- * total of the input that has no effect, where there is one. */
+/* Prints the largest bias of an index, root mean square errors over the inputs, and coverage; the last column is the
+ * mean total of the input without effect, if there is one. */
 void statistics_noise(int n_seeds)
 {
 	static struct campaign c;

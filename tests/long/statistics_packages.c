@@ -1,6 +1,6 @@
 /* statistics_packages.c - the default estimators of other packages, after their published formulas.
  *
- * a, b, c: outputs at A, B and A with column j from B; all centred by the mean of every output, as both packages do. */
+ * a, b, c: outputs at A, B and A with column j from B; all centered by the mean of every output, as in both packages. */
 #include <stddef.h>
 
 #include "tests/long/statistics.h"
@@ -10,7 +10,7 @@ static double output(const double *y, int n_samples, int row, int sample)
 	return y[(size_t)row * n_samples + sample];
 }
 
-/* The mean over the samples that a package looks at. */
+/* The mean over the samples that a package uses. */
 static double grand_mean(const double *y, int n, int d, int n_samples)
 {
 	double sum = 0.0;
@@ -22,7 +22,7 @@ static double grand_mean(const double *y, int n, int d, int n_samples)
 
 /* S_j = mean(b (c - a)) / v,  T_j = mean((a - c)^2) / (2 v),  v the variance of a and b together
  *
- * Source   SALib 1.4, SALib.analyze.sobol: outputs standardised, first_order, total_order;
+ * Source   SALib 1.4, SALib.analyze.sobol: outputs standardized, first_order, total_order;
  *          Saltelli et al. 2010, Comput. Phys. Commun. 181, 259-270, table 2 (b) and (f)
  */
 static void salib(const double *y, int n, int d, int n_samples, double *value)
@@ -47,8 +47,8 @@ static void salib(const double *y, int n, int d, int n_samples, double *value)
 	}
 }
 
-/* S_j = (sum(b c) / (n - 1) - mean(a) mean(b)) / v,  T_j = (v + mean(a)^2 - sum(a c) / (n - 1)) / v,  v the variance of
- * a alone, over n - 1
+/* S_j = (sum(b c) / (n - 1) - mean(a) mean(b)) / v,  T_j = (v + mean(a)^2 - sum(a c) / (n - 1)) / v,  v the variance
+ * of a only, over n - 1
  *
  * Source   OpenTURNS 1.20, SaltelliSensitivityAlgorithm, the default of its sensitivity analysis;
  *          Saltelli 2002, Comput. Phys. Commun. 145, 280-297

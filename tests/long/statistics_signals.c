@@ -1,5 +1,5 @@
-/* statistics_signals.c - what signals "auto" is worth: CPU time until every S1 and ST of the paper's linear study has a half width
- * of 0.05, at each of its six frequencies, beside fixed numbers of signals. */
+/* statistics_signals.c - benefit of signals "auto": CPU time until every S1 and ST of the paper's linear study has a
+ * half width of 0.05, at each of its six frequencies, against fixed numbers of signals. */
 #include "tests/long/statistics.h"
 
 #include <stdio.h>
@@ -81,8 +81,8 @@ static void cell_run(void *of, int k)
 		seed_run(&campaign->cells[k], (uint64_t)seed);
 }
 
-/* Prints, for each frequency, mean CPU seconds and runs with signals "auto" and with fixed numbers of them; a design that 300,000
- * runs did not make narrow enough has its half width instead. */
+/* Prints, for each frequency, mean CPU seconds and runs with signals "auto" and with fixed numbers of signals; for a
+ * design that is not narrow enough after 300,000 runs, its half width instead. */
 void statistics_signals(int n_seeds)
 {
 	static struct campaign c;

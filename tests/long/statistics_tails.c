@@ -1,5 +1,5 @@
-/* statistics_tails.c - indices where few samples decide, and of many inputs: errors beside the estimators by name, and how often
- * intervals hold. */
+/* statistics_tails.c - indices of functions whose variance is dominated by a few samples, and of many inputs: errors
+ * of S1, ST and of the named estimators, and coverage of intervals. */
 #include "tests/long/statistics.h"
 
 #include <gsl/gsl_cdf.h>
@@ -12,13 +12,13 @@ enum { INPUTS = 16, JOBS = 200, SIZES = 2 };
 
 static const int sizes[SIZES] = {250, 1000};
 
-/* A function of independent uniform variables, and its exact indices as its kind finds them. */
+/* A function of independent uniform variables, and how its exact indices are computed. */
 struct tail {
 	const char *name;
 	int n_inputs;
 	double (*y)(const double *u);
 	void (*exact)(const struct tail *tail, double *value); /* first-order, then total  (2 x n_inputs) */
-	double factor[INPUTS]; /* of a product: mean square over squared mean  (n_inputs) */
+	double factor[INPUTS]; /* product: mean square over squared mean of each factor (n_inputs) */
 };
 
 /* A product of independent factors with ratios r_j of mean square to squared mean:
@@ -39,7 +39,7 @@ static void product(const struct tail *tail, double *value)
 
 static const double sigma[8] = {1.0, 0.7, 0.5, 0.2};
 
-/* exp(sigma z): mean square over squared mean exp(sigma^2) */
+/* exp(sigma z): mean square over squared mean is exp(sigma^2) */
 static double lognormal(const double *u)
 {
 	double sum = 0.0;
@@ -58,7 +58,7 @@ static double lognormal_8(const double *u)
 
 static const double alpha[4] = {2.5, 3.0, 4.0, 6.0};
 
-/* u^(-1/alpha): mean alpha / (alpha - 1), mean square alpha / (alpha - 2), no fourth moment up to alpha = 4 */
+/* u^(-1/alpha): mean alpha / (alpha - 1), mean square alpha / (alpha - 2), no fourth moment for alpha <= 4 */
 static double pareto(const double *u)
 {
 	double y = 1.0;
@@ -87,7 +87,7 @@ static void pareto_sum_exact(const struct tail *tail, double *value)
 		value[k] = v[k % 4] / all;
 }
 
-/* An event of one sample in a hundred that needs three inputs; 1 or 0: mean square over squared mean 1/p of each factor. */
+/* An event of one sample in a hundred that needs three inputs; 1 or 0: each factor has mean square over squared mean 1/p. */
 static double event(const double *u)
 {
 	return u[0] > 0.8 && u[1] > 0.8 && u[2] > 0.75 ? 1.0 : 0.0;
@@ -95,7 +95,8 @@ static double event(const double *u)
 
 static const double reach = 0.35;
 
-/* Of 94 % of the samples nothing, as of buildings that hardly touch: h (1 + u3), h = max(0, u1 + u2 - (2 - s))^2, s = 0.35.
+/* Zero in 94 % of the samples, as of buildings that hardly touch: h (1 + u3), h = max(0, u1 + u2 - (2 - s))^2, s =
+ * 0.35.
  *
  *   E h = s^4 / 12, E h^2 = s^6 / 30, E[h | u1] = e^3 / 3 with e uniform up to s: mean square s^7 / 63;  E g = 3/2, E g^2 = 7/3
  */
@@ -128,8 +129,8 @@ static double bratley(const double *u)
 	return sum;
 }
 
-/* What the inputs of a set explain: mean product of the function and itself with the other inputs drawn again, from
- * E[u^2] = 1/3 of an input in the set, 1/4 of another. */
+/* Variance explained by a set of inputs, plus the squared mean: mean product of the function at two points that share
+ * the inputs of the set, from E[u^2] = 1/3 of an input in the set and E[u]^2 = 1/4 of another. */
 static double bratley_closed(unsigned set)
 {
 	double sum = 0.0;
@@ -154,7 +155,7 @@ static void bratley_exact(const struct tail *tail, double *value)
 	}
 }
 
-/* Interactions of all inputs alone. */
+/* Only the interaction of all inputs. */
 static double parity(const double *u)
 {
 	double y = 1.0;
@@ -183,7 +184,7 @@ static double g_15(const double *u)
 	return y;
 }
 
-/* None of 16 inputs beyond its limit: 1 or 0; 5 % of the samples are. */
+/* Whether any of 16 inputs is beyond its limit: 1 or 0; 1 in 5 % of the samples.  1 minus it is a product. */
 static double any_of_16(const double *u)
 {
 	for (int j = 0; j < 16; j++)
@@ -192,7 +193,7 @@ static double any_of_16(const double *u)
 	return 0.0;
 }
 
-/* Two inputs, and one sample in two hundred far off by a third. */
+/* Two inputs, and a third that makes one sample in two hundred an outlier. */
 static double outlier(const double *u)
 {
 	return u[0] + u[1] + (u[2] > 0.995 ? 20.0 : 0.0);
@@ -268,7 +269,7 @@ static void factors_fill(void)
 
 /* ---- runs ---- */
 
-// what is compared: S1 and ST, then the estimators by name for designs of order total, then the packages
+// columns: S1 and ST, then the named estimators for designs of order total, then the packages
 enum { BEST, NAMED, NAMED_MAX = 8, PACKAGES = NAMED + NAMED_MAX, ESTIMATORS = PACKAGES + 2 };
 
 struct tail_cell {
@@ -394,7 +395,7 @@ static double least(const struct tail_cell *cell, const double *held, int total)
 	return share;
 }
 
-/* The estimators that S1 and ST are to be no worse than, of which the first is plain. */
+/* Estimators that S1 and ST must not be worse than; the first is the plain one. */
 static const char *const rivals[] = {"saltelli_2010", "martinez", "janon"};
 
 enum { RIVALS = sizeof rivals / sizeof rivals[0] };
@@ -431,10 +432,11 @@ static void print_cell(const struct tail_cell *cell)
 	       least(cell, cell->covered, 1), cell->noted > 0 ? cell->needed / cell->noted : 0.0, points);
 }
 
-/* Prints, of every function, design and number of rows: root mean square errors in thousandths over the inputs of S1 and then of
- * ST, of all beside, and the ratio to the best of plain, Martinez and Janon; the least share of intervals that hold, the
- * share of results with a note that they do not, and the least share that hold or are noted; rows that the notes ask for;
- * intervals without width that do not hold. */
+/* Prints, for every function, design and number of rows: root mean square errors over the inputs in thousandths, of
+ * S1 and of the other estimators, and the ratio to the best of plain, Martinez and Janon; the same for ST; the least
+ * coverage of an interval; the fraction of results with a note that intervals may be too narrow; the least fraction
+ * that is covered or noted; the rows that the notes ask for; intervals of zero width that do not contain the exact
+ * value. */
 void statistics_tails(int n_seeds)
 {
 	static struct campaign c;

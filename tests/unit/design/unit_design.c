@@ -15,7 +15,7 @@ static int row_named(const char *name)
 	return row;
 }
 
-/* A study of D inputs, uniform on (0, 1), and its filled design; freed by the caller. */
+/* The filled design of a study of D inputs, uniform on (0, 1); the caller frees it. */
 static double *unit_design(const char *method, int rows, uint64_t seed)
 {
 	struct pound_input inputs[D];
@@ -30,7 +30,7 @@ static double *unit_design(const char *method, int rows, uint64_t seed)
 	return x;
 }
 
-/* The probabilities of a design that grows to 6 max_rows runs; their grouping and rows. */
+/* The probabilities of a design that grows to 6 max_rows runs; its grouping and its rows. */
 static double *grown_design(const char *method, int max_rows, int randomisations,
                             struct pound_grouping *grouping, int *rows)
 {
@@ -48,7 +48,7 @@ static double *grown_design(const char *method, int max_rows, int randomisations
 	return u;
 }
 
-/* Points of a column's group in each of n equal strata: all one. */
+/* Checks that each of n equal strata contains one point of a column's group. */
 static void check_strata(const double *u, int rows, struct pound_grouping grouping, int group, int n)
 {
 	char *hit = calloc((size_t)n, 1);
@@ -76,7 +76,7 @@ static void rows_of_a_group_are_a_design_of_their_own(void **state)
 	u = grown_design("lhs", 1500, 0, &grouping, &rows);
 	assert_memory_equal(u, batch, sizeof *u * 2 * D * 100);
 	free(u), free(batch);
-	// rows of a random design, and of one Latin hypercube, have no groups
+	// rows of a random design or of a single Latin hypercube have no groups
 	for (int m = 0; m < 2; m++) {
 		const struct pound_study study = {.n_inputs = D, .design = {.method = m, .rows = 100}};
 		assert_int_equal(pound_design_grouping(&study).n, 0);
@@ -95,7 +95,7 @@ static void every_net_of_a_sobol_design_is_a_net_of_its_own(void **state)
 		for (int group = 0; group < n; group++)
 			for (int c = 0; c < 2 * D; c++)
 				check_strata(u + c, rows, grouping, group, rows / n);
-		// and from the start: the first 16 points of each
+		// the first 16 points of each group are stratified, too
 		for (int group = 0; group < n; group++)
 			check_strata(u, 16 * n, grouping, group, 16);
 		free(u);
@@ -154,7 +154,7 @@ static void random_columns_are_uniform_and_unrelated(void **state)
 				double covariance = 0.0;
 				for (int i = 0; i < N; i++)
 					covariance += (x[i * 2 * D + c] - 0.5) * (x[i * 2 * D + e] - 0.5);
-				// a correlation has standard deviation 1 / sqrt(n); 5 of them
+				// 5 standard deviations of a correlation, 1 / sqrt(n) each
 				check_near(12.0 * covariance / N, 0.0, 5.0 / sqrt(N));
 			}
 			double lagged = 0.0;

@@ -1,4 +1,4 @@
-/* unit_distribution.c - quantiles against closed forms and against distribution functions written here. */
+/* unit_distribution.c - quantiles against closed forms and against distribution functions defined here. */
 #include "engine/pound.h"
 #include "tests/support/check.h"
 
@@ -17,7 +17,7 @@ static int row_named(const char *name)
 	return row;
 }
 
-/* The first rule that a distribution breaks, in words. */
+/* The message of the first rule that a distribution violates. */
 static const char *first_broken(const struct pound_distribution *distribution)
 {
 	for (int k = 0; pound_distribution_rule(distribution->type, k); k++)
@@ -134,7 +134,7 @@ static void every_quantile_inverts_its_distribution_function(void **state)
 		for (int i = 1; i < 2000; i++) {
 			double u = i / 2000.0;
 			double x = quantile(laws[k].name, laws[k].p, u);
-			// P changes by x P'(x) eps for an error of eps in x; none of these laws exceeds x P' = 30
+			// P changes by x P'(x) eps for an error of eps in x; none of these distributions exceeds x P' = 30
 			check_near(laws[k].cdf(laws[k].p, x), u, 100.0 * DBL_EPSILON);
 		}
 }
@@ -187,7 +187,7 @@ static void beta_quantiles_with_closed_forms_are_met(void **state)
 	static const double mirrored[4] = {1.0, 7.0, 0.0, 1.0}, small[4] = {0.02, 1.0, 0.0, 1.0};
 	for (double u = 1e-6; u < 1.0; u *= 1.5) {
 		double s = sin(1.5707963267948966 * u);
-		// GSL's distribution function is good to some 1e-14; dx/x = dP / (x P'), at most dP / alpha
+		// GSL's distribution function has an error of some 1e-14; dx/x = dP / (x P'), at most dP / alpha
 		check_near(quantile("beta", arcsine, u), s * s, 1e-13);
 		check_near(quantile("beta", power, u), pow(u, 1.0 / 7.0), 1e-13);
 		check_near(quantile("beta", mirrored, u), -expm1(log1p(-u) / 7.0), 1e-13);
@@ -204,14 +204,14 @@ static void beta_quantiles_end_for_any_allowed_exponents(void **state)
 				double p[4] = {a, b, 0.0, 1.0};
 				double x = quantile("beta", p, u);
 				assert_true(x >= 0.0 && x <= 1.0);
-				// one rounding of x near an end moves P by as much as P'(x) eps
+				// near an end one rounding of x changes P by P'(x) eps
 				double below = x > 4.0 * DBL_MIN ? gsl_cdf_beta_P(nextafter(x, 0.0), a, b) : 0.0;
 				double above = gsl_cdf_beta_P(nextafter(x, 1.0), a, b);
 				assert_true(below <= u + 1e-11 && above >= u - 1e-11);
 			}
 }
 
-/* Mean of a power of a variable, by Gauss' rule over the normal deviate that its quantile is taken at. */
+/* Mean of a power of a variable, by Gauss quadrature over the normal deviate at which the quantile is taken. */
 static double moment(const char *name, const double *p, int power)
 {
 	gsl_integration_glfixed_table *gauss = gsl_integration_glfixed_table_alloc(200);
@@ -245,7 +245,8 @@ static void other_parameters_of_a_distribution_are_its_moments(void **state)
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		const double mean = moment(cases[k].name, cases[k].p, 1),
 		             square = moment(cases[k].name, cases[k].p, 2);
-		// beyond 8 deviations is 1e-15, times what a lognormal has there; near 8 a probability has 1 - P of one digit
+		// the neglected probability beyond 8 deviations is 1e-15, times the values of a lognormal there; near 8, 1 -
+		// P has one digit
 		check_near(mean, cases[k].mean, 1e-9 * cases[k].mean);
 		check_near(sqrt(square / (mean * mean) - 1.0), cases[k].cov, 1e-8);
 	}
@@ -290,7 +291,7 @@ static void a_truncated_normal_keeps_its_digits_far_in_the_tail(void **state)
 		double x = quantile("truncated_normal", p, u);
 		double share = (gsl_cdf_ugaussian_Q(x) - gsl_cdf_ugaussian_Q(25.0)) /
 		               (gsl_cdf_ugaussian_Q(20.0) - gsl_cdf_ugaussian_Q(25.0));
-		// Q changes by the factor x^2 times the relative change of x: 625 roundings
+		// Q changes by x^2 times the relative change of x: 625 roundings
 		check_near(share, 1.0 - u, 625.0 * 4.0 * DBL_EPSILON);
 	}
 }
@@ -329,7 +330,7 @@ static void the_support_is_given_by_the_parameters(void **state)
 			assert_true(x >= low && x <= high && mirrored >= low && mirrored <= high);
 		}
 	}
-	// discrete and empirical have their own
+	// discrete and empirical distributions have their own support
 	assert_null(pound_distribution_name((int)(sizeof cases / sizeof cases[0]) + 2));
 }
 
@@ -343,7 +344,7 @@ static void a_discrete_quantile_is_a_staircase_with_its_edges_at_the_cumulated_w
 	                    x[] = {-1, -1, -1, 2, 2, 5, 5, 5};
 	for (int k = 0; k < 8; k++)
 		check_near(pound_distribution_quantile(&weighted, u[k]), x[k], 0);
-	// alike: n values take n equal parts, exactly as many of the rows of a Latin hypercube
+	// equal weights: n values have n equal intervals, exactly as many of the rows of a Latin hypercube
 	double many[16];
 	for (int k = 0; k < 16; k++)
 		many[k] = k;
@@ -366,7 +367,7 @@ static void lists_that_make_no_distribution_are_reported_in_words(void **state)
 	    {{1, 1}, {1, 1}, "every value must be greater than the one before"},
 	    {{2, 1}, {1, 1}, "every value must be greater than the one before"},
 	    {{1, 2}, {1, 1}, ""},
-	    {{1, NAN}, {1, 1}, ""}, // it is not known what it breaks
+	    {{1, NAN}, {1, 1}, ""}, // with NAN no rule is known to be violated
 	};
 	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
 		const struct pound_distribution d = {.type = row_named("discrete"),

@@ -1,4 +1,4 @@
-/* unit_row_samples.c - the mixtures of A and B that a row has. */
+/* unit_row_samples.c - the combinations of A and B in a row. */
 #include "engine/design/row_samples.h"
 #include "tests/support/check.h"
 
@@ -36,7 +36,7 @@ static void a_row_begins_with_the_same_samples_in_every_order(void **state)
 static void mixtures_that_few_inputs_have_twice_are_made_once(void **state)
 {
 	(void)state;
-	// B with a column from A is A with the other from B
+	// B with a column from A is A with the other column from B
 	assert_int_equal(pound_order_samples(POUND_ORDER_SECOND, 2), 4);
 	assert_int_equal(pound_order_sample(2, 2u), 3);
 	assert_int_equal(pound_order_samples(POUND_ORDER_SECOND, 1), 3);

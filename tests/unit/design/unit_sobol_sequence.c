@@ -1,4 +1,4 @@
-/* unit_sobol_sequence.c - Sobol' points are as even as they must be, scrambled or not. */
+/* unit_sobol_sequence.c - Sobol' points are as uniform as required, scrambled or not. */
 #include "engine/design/sobol_sequence.h"
 #include "tests/support/check.h"
 
@@ -19,8 +19,8 @@ static struct pound_sequence net_of(int column, int scramble)
 	return net;
 }
 
-/* The polynomial of a column, leading term included, found again from the points' own recurrence: direction number k is a
- * sum of the s before it, by Gauss elimination over 24 of them. */
+/* The polynomial of a column with its leading term, recovered from the direction numbers: each is a sum of the s
+ * before it; all polynomials of the degree are tried on 24 direction numbers. */
 static unsigned polynomial_of(int column)
 {
 	const struct pound_sequence net = net_of(column, 0);
@@ -40,7 +40,7 @@ static unsigned polynomial_of(int column)
 	return 0;
 }
 
-/* Powers of x modulo a polynomial until 1 comes again. */
+/* The order of x modulo a polynomial: the smallest power that is 1. */
 static int order_of_x(unsigned polynomial, int degree)
 {
 	unsigned power = 1;
@@ -61,7 +61,7 @@ static void polynomials_are_primitive_and_each_is_used_once(void **state)
 		unsigned p = polynomial_of(c);
 		assert_true(p > 0 && !used[p]);
 		used[p] = true;
-		// x runs through all 2^s - 1 elements that are not 0; 1 for x + 1
+		// x generates all 2^s - 1 nonzero elements; 1 for x + 1
 		assert_int_equal(order_of_x(p, degrees[c]), (1 << degrees[c]) - 1);
 	}
 }
@@ -81,7 +81,7 @@ static void the_first_points_are_those_of_the_literature(void **state)
 	}
 }
 
-/* An independent generator agrees on the columns whose direction numbers are the same in both tables: the first two. */
+/* An independent generator agrees in the columns with the same direction numbers: the first two. */
 static void the_first_columns_are_those_of_another_generator(void **state)
 {
 	(void)state;
@@ -91,14 +91,14 @@ static void the_first_columns_are_those_of_another_generator(void **state)
 		gsl_qrng_get(other, x);
 		for (int c = 0; c < 2; c++) {
 			const struct pound_sequence net = net_of(c, 0);
-			// its points come in the order of a Gray code
+			// its points are in the order of a Gray code
 			check_near(pound_sequence_point(&net, n ^ n >> 1), x[c], 0x1p-29);
 		}
 	}
 	gsl_qrng_free(other);
 }
 
-/* Counts of 2^m points in the boxes of 2^a by 2^b intervals of two columns: all 2^(m - a - b). */
+/* Counts of 2^m points in the boxes of 2^a by 2^b intervals of two columns: all must be 2^(m - a - b). */
 static void check_boxes(const struct pound_sequence *p, const struct pound_sequence *q, uint32_t first, int m,
                         int a, int b)
 {
@@ -113,10 +113,10 @@ static void check_boxes(const struct pound_sequence *p, const struct pound_seque
 		assert_int_equal(count[box], 1 << (m - a - b));
 }
 
-/* Every elementary interval of the first, and of a later, run of 2^m points of two columns.
+/* Every elementary interval of the first, and of a later, block of 2^m points of two columns.
  *
- * Two polynomials of degrees s and t make a net whose boxes of volume 2^(s + t - 2 - m) hold equally many points
- * (Sobol' 1967); the van der Corput column counts as degree 1. */
+ * Two polynomials of degrees s and t give a sequence whose boxes of volume 2^(s + t - 2 - m) contain equally many
+ * points (Sobol' 1967); the van der Corput column counts as degree 1. */
 static void check_columns(int scramble, int m, int columns)
 {
 	for (int c = 0; c < columns; c++)
@@ -134,7 +134,7 @@ static void elementary_intervals_hold_equally_many_points(void **state)
 {
 	(void)state;
 	check_columns(0, 10, 8);
-	// one column by itself: every interval of 2^-m once, to the last column
+	// a single column: one point in every interval of 2^-m, up to the last column
 	for (int c = 0; c < POUND_SEQUENCE_COLUMNS; c++) {
 		const struct pound_sequence net = net_of(c, 0);
 		check_boxes(&net, &net, 0, 12, 12, 0);
@@ -178,7 +178,7 @@ static void a_scrambled_point_is_uniform_and_another_scramble_is_unrelated(void 
 		check_near(sum / N, 0, 5 * sqrt(1. / 12 / N));
 		check_near(square / N, 1. / 12, 5 * sqrt(1. / 180 / N));
 		check_near(product / N, 0, 5 * sqrt(1. / 144 / N));
-		// neighbours of a net repel each other, but no more than two strata of a half do: at least -1/12
+		// neighboring points have a negative covariance, limited by that of two strata of one half: at least -1/12
 		assert_true(pair / N < 5. / 12 / sqrt(N) && pair / N > -1. / 12);
 	}
 }

@@ -1,9 +1,9 @@
 /* The engine against the oracle on random scenes.
  *
- *   1. Each seed is a random specimen.
- *   2. The oracle gives its answer with two step lengths, and with a motion whose samples are moved by 1e-9 of
- *      themselves at random: the first shows its own error, the second how much a rounding is amplified.
- *   3. The engine must agree within that error and that amplification times its roundings.  Where the motion is so
+ *   1. Each seed gives a random specimen.
+ *   2. The oracle computes it with two step lengths, and with ground samples changed at random by 1e-9 of themselves: the
+ *      first shows its own error, the second the amplification of rounding errors.
+ *   3. The engine must agree within that error plus its own rounding errors times the amplification.  If the motion is so
  *      chaotic that the oracle does not agree with itself to 1e-6, half the duration is tried. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
@@ -14,7 +14,7 @@
 
 enum { SCENES = 96, SAMPLES = 301 };
 
-// the engine's step: a sample, some ten terms of a series, each rounded a few times
+// a step of the engine: one sample, some ten terms of a series, each rounded a few times
 static const double roundings = 30 * DBL_EPSILON * SAMPLES;
 static const double nudge = 1e-9;
 static const double pi = 3.14159265358979323846;
@@ -31,7 +31,7 @@ static struct pound_response nudged(const struct specimen *specimen, double radi
 	return response;
 }
 
-// what an error of a measure is a part of; the state at the end may be near 0
+// reference value for the relative error of a measure; the state at the end may be near 0
 static double scale(const struct pound_response *r, const struct pound_scene *scene, int measure)
 {
 	const char *name = oracle_measure_name(measure);
@@ -43,13 +43,13 @@ static double scale(const struct pound_response *r, const struct pound_scene *sc
 	return fabs(oracle_measure(r, measure));
 }
 
-// when a grazing start at rest begins is far less certain than what follows from it
+// the start of a grazing contact at rest is far less certain than the motion that follows
 static bool is_contact_time(int measure)
 {
 	return !strcmp(oracle_measure_name(measure), "contact_time");
 }
 
-// the largest difference of any measure, so that no measure is judged by an error that is small by luck
+// the largest difference of any measure, so that no measure is compared with an error that is small by chance
 static double difference(const struct pound_response *a, const struct pound_response *b,
                          const struct pound_scene *scene)
 {
@@ -62,7 +62,7 @@ static double difference(const struct pound_response *a, const struct pound_resp
 	return largest;
 }
 
-/* Compares one scene over the longest duration that is not chaotic; returns its samples. */
+/* Compares one scene over the longest duration that is not chaotic; returns its number of samples. */
 static int compare(struct specimen *specimen, int scene_number)
 {
 	const struct pound_scene *scene = &specimen->study.scene;
@@ -87,7 +87,7 @@ static int compare(struct specimen *specimen, int scene_number)
 		if (isnan(want) && isnan(got))
 			continue;
 		double allowed = (own + amplified + roundings) * scale(&fine, scene, m);
-		// when a grazing start at rest ends falls into place with the step, but not steadily
+		// the end of a grazing contact at rest converges with the step, but not steadily
 		if (is_contact_time(m))
 			allowed = 10 * (allowed + fabs(want - coarse.contact_time)) +
 			          roundings / nudge * fabs(want - moved.contact_time);
@@ -108,7 +108,7 @@ static void the_engine_agrees_with_the_oracle_on_random_scenes(void **state)
 		touched += specimen_engine(&specimen).contact_count > 0;
 		specimen_free(&specimen);
 	}
-	// most scenes pound and are compared to their end, or the test is about nothing
+	// most scenes must have contacts and be compared to their end
 	assert_true(whole > SCENES * 3 / 4);
 	assert_true(touched > SCENES * 3 / 4);
 }

@@ -1,4 +1,5 @@
-/* unit_chain.c - rows of buildings against known answers by two independent 113-bit programs (buildings.md 4). */
+/* unit_chain.c - rows of buildings against known answers by two independent programs with 113-bit arithmetic
+ * (buildings.md 4). */
 #include "engine/exact/task.h"
 #include "engine/numeric/cpu_width.h"
 #include "engine/solver/solver.h"
@@ -27,7 +28,7 @@ static void row_run_all(struct row *row, int samples, unsigned asked)
 	}
 }
 
-/* Compares a measure of some floors or links with what is known: digits of 15 are. */
+/* Compares a measure of some floors or links with known values of 15 digits. */
 static void measures_check(const double *measures, int stride, int measure, int n, const double *want,
                            const char *what)
 {
@@ -124,7 +125,7 @@ static void levels_within_stories_come_out(void **state)
 	LINKS(row, IMPULSE_MAX, 85896.7700219882, 46498.6591743184);
 }
 
-/* ---- what must be the same ---- */
+/* ---- invariants ---- */
 
 static void rows_have_the_same_bytes_at_every_lane_count(void **state)
 {
@@ -148,7 +149,7 @@ static void rows_have_the_same_bytes_at_every_lane_count(void **state)
 		}
 }
 
-/* Whole samples by modes against power series alone, which a balance of energy asks for. */
+/* Whole samples by modes against power series in every step, which are used if an energy balance is requested. */
 static void free_motion_agrees_with_series(void **state)
 {
 	(void)state;
@@ -177,7 +178,7 @@ static void free_motion_agrees_with_series(void **state)
 	check_report("%d rows: free motion off series by %.1e, energy residual %.1e at most", rows, worst,
 	             residual);
 	assert_true(residual < 1e-11);
-	assert_true(worst < 1e-11); // impacts make an error grow
+	assert_true(worst < 1e-11); // impacts amplify errors
 }
 
 static void a_mirrored_row_under_a_mirrored_ground_is_mirrored(void **state)
@@ -220,7 +221,7 @@ static void equal_buildings_do_not_meet(void **state)
 	row_run_all(&row, row_harmonic(&row, 1.4, 5, 4), ALL);
 	assert_true(row.floor_measures[0][POUND_FLOOR_DRIFT_MAX] > .003);
 	for (int j = 0; j < 15; j++) {
-		assert_true(row.link_measures[j][POUND_LINK_IMPULSE_MAX] < 1e-6); // of 1e5 N s: roundings
+		assert_true(row.link_measures[j][POUND_LINK_IMPULSE_MAX] < 1e-6); // rounding errors of 1e5 N s
 		check_near(row.link_measures[j][POUND_LINK_CONTACTS], 0, 0);
 	}
 }
@@ -249,7 +250,7 @@ static void a_linear_row_scales(void **state)
 
 /* ---- observers ---- */
 
-/* what an observer got: where the last piece ended, and how far the next began from there */
+/* state at the end of the last piece, and largest jumps to the start of the next */
 struct story {
 	double time, u, v, gap_time, gap_u, gap_v, most;
 	int pieces, samples;
@@ -280,7 +281,7 @@ static void story_add(void *into, const struct pound_chain_piece *piece)
 	story->most = fmax(story->most, fabs(story->u));
 }
 
-/* The other one that is observed moves with the ground, where no contact acts. */
+/* The second observed floor moves with the ground, without contact. */
 static void an_observer_gets_the_whole_motion_of_a_floor(void **state)
 {
 	(void)state;
@@ -307,7 +308,7 @@ static void an_observer_gets_the_whole_motion_of_a_floor(void **state)
 
 /* ---- one story ---- */
 
-/* The pair that a row of two buildings of one story is. */
+/* A row of two one-story buildings as a pair. */
 static struct pound_task pair_of(const struct row *r, const struct pound_chain_task *chain)
 {
 	const double m = r->floors[0].mass, m2 = r->floors[1].mass;
@@ -371,7 +372,8 @@ static void one_story_goes_as_the_pair(void **state)
 
 /* ---- work space ---- */
 
-/* Eight buildings of 50 stories that meet at every floor, by every solver that has rows, in work space with a known end behind it. */
+/* Eight buildings of 50 stories with contacts at every floor, by every solver of rows; the bytes after the work space
+ * are checked. */
 static void the_largest_row_of_straight_contacts_takes_a_mebibyte(void **state)
 {
 	(void)state;
@@ -431,7 +433,7 @@ static void the_largest_row_of_straight_contacts_takes_a_mebibyte(void **state)
 	             POUND_CHAIN_SCRATCH / 1024);
 }
 
-/* A linear building that goes by maps from one sample to the next, in work space that held anything before. */
+/* A linear building by maps from sample to sample, in work space with arbitrary contents. */
 static void what_work_space_held_before_is_not_read(void **state)
 {
 	(void)state;

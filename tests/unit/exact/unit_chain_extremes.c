@@ -1,4 +1,5 @@
-/* unit_chain_extremes.c - stiff and extreme rows of buildings, a table: steps on, energy kept, the same bytes by 1, 4 and 8 lanes.
+/* unit_chain_extremes.c - a table of stiff and extreme rows of buildings: runs end, energy balances, same bytes with
+ * 1, 4 and 8 lanes.
  *
  * `make extremes` prints the table. */
 #include "engine/numeric/cpu_width.h"
@@ -34,7 +35,7 @@ static void contact_model(const char *name, double restitution)
 	row.contact.speed_floor = 0.001;
 }
 
-/* Two buildings that meet at all floors under 1.5 s of a sine that both yield to. */
+/* Two buildings with contacts at all floors under 1.5 s of a sine that makes both yield. */
 static void pair_of_buildings(int left, int right)
 {
 	row_init(&row);
@@ -47,7 +48,7 @@ static void pair_of_buildings(int left, int right)
 	row_harmonic(&row, 1.4, 1.5, 4);
 }
 
-/* Runs the row by other lane counts: the same bytes. */
+/* Runs the row with other lane counts: the same bytes. */
 static void lanes_check(void)
 {
 	static struct row other;
@@ -154,7 +155,7 @@ static void masses_of_any_ratio(void **state)
 static void all_floors_at_once(void **state)
 {
 	(void)state;
-	// floors of one building hit those of a wall at the same instants: all stories but the first are nearly rigid
+	// floors of one building hit a wall simultaneously: all stories but the first are nearly rigid
 	pair_of_buildings(4, 1);
 	row.n_buildings = 1;
 	row.wall = true;
@@ -162,7 +163,7 @@ static void all_floors_at_once(void **state)
 		row.buildings[0].stiffness[i] = 1e4;
 	row.contact.stiffness_ratio = 1e-2;
 	scene_check("a stiff block meets a wall with four floors");
-	// and those of two equal buildings, one of which stands still until it is hit
+	// and floors of two equal buildings, one of which is at rest until the impact
 	pair_of_buildings(5, 5);
 	row.buildings[1] = row.buildings[0];
 	row.buildings[1].frequency_hz *= 2;
@@ -205,7 +206,7 @@ static void stories_that_yield_at_once(void **state)
 {
 	(void)state;
 	for (int law = 0; law < 4; law++) {
-		// all drifts are alike: the first mode of these stiffnesses is a straight line
+		// all drifts are equal: the first mode of these stiffnesses is a straight line
 		pair_of_buildings(6, 6);
 		for (int b = 0; b < 2; b++) {
 			for (int i = 0; i < 6; i++)
@@ -245,7 +246,7 @@ static void every_contact_model(void **state)
 	}
 }
 
-/* Hops that get shorter and shorter until bodies stay together, and part again when the ground turns. */
+/* Bounces that become shorter until sustained contact, and separation when the ground acceleration changes sign. */
 static void rigid_impacts_that_end_in_sticking(void **state)
 {
 	(void)state;

@@ -1,5 +1,5 @@
-/* unit_contact_map.c - long pressed contact in closed form, however stiff it is, with its energy; and what does not depend on
- * how the motion is divided into cells. */
+/* unit_contact_map.c - sustained contact against closed forms, however stiff it is, with its energy balance; and
+ * results that must not depend on how the motion is divided into contact substeps. */
 #include "tests/support/check.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static struct pound_task_result march(const struct pound_task *task)
 	return result;
 }
 
-/* A free mass on a wall, which the ground presses on it by 1 + rate t [m/s2].
+/* A free mass that the ground presses on a wall by an acceleration of 1 + rate t [m/s2].
  *
  *   p'' + C p' + K p = 1 + rate t     long after the start p = (1 + rate t)/K - C rate/K^2
  */
@@ -46,7 +46,7 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 	(void)state;
 	double ground[SAMPLES], end = (SAMPLES - 1) * step;
 	for (int t = 0; t < 24; t++) {
-		double stiffness = pow(10, 4 + t / 2), damping; // up to 5e6 radians a sample
+		double stiffness = pow(10, 4 + t / 2), damping; // up to 5e6 radians per sample
 		struct pound_task task = pressed(ground, -0.25, stiffness, t % 3 * 0.3);
 		damping = task.contact_damping;
 		task.tension = t % 2;
@@ -59,16 +59,16 @@ static void a_long_press_ends_where_its_ground_pushes_it(void **state)
 	}
 }
 
-/* A damped contact that is pressed ever more goes ever farther: each of its cells ends at a new largest displacement. */
+/* In a damped contact under a growing force the overlap grows: each contact substep ends at a new largest displacement. */
 static void a_press_that_grows_for_long_goes_by_more_than_cells(void **state)
 {
 	(void)state;
 	double ground[SAMPLES], end = (SAMPLES - 1) * step;
 	for (int t = 0; t < 44; t++) {
-		double stiffness = pow(10, 4 + t / 2); // up to 3e10 radians a sample
+		double stiffness = pow(10, 4 + t / 2); // up to 3e10 radians per sample
 		struct pound_task task = pressed(ground, 0.25, stiffness, 0);
 		for (int i = 0; i < SAMPLES; i++)
-			ground[i] += 1; // from nothing
+			ground[i] += 1; // from zero
 		task.tension = t % 2;
 		const struct pound_task_result r = march(&task);
 		double pressed_by = 0.25 * end - 0.25 * task.contact_damping / stiffness;
@@ -97,7 +97,7 @@ static void a_press_that_fades_ends_when_the_overlap_or_the_force_is_gone(void *
 	}
 }
 
-/* Two bodies of unlike frequency that swing, touch, bounce and stick over ground motion of two sines. */
+/* Two bodies of different frequency that oscillate, collide, bounce and stay in contact under ground motion of two sines. */
 static struct pound_task pounding(double *ground, int t, int n)
 {
 	double ratio = t % 2 ? 0.6 : 3, w[2] = {2 * M_PI * 2, 2 * M_PI * 3.1}, stiffness = pow(10, 4 + t % 7);
@@ -141,17 +141,17 @@ static void samples_twice_as_dense_change_no_contact_however_stiff(void **state)
 		const struct pound_task_result twice = march(&task);
 		contacts += once.contacts;
 		assert_int_equal(twice.contacts, once.contacts);
-		// the roundings of each contact are magnified by the next ones
+		// the rounding errors of each contact are amplified by the next ones
 		check_near(twice.impulse_max / once.impulse_max, 1, 1e-9);
 		for (int i = 0; i < POUND_OSCILLATORS; i++)
 			check_near(twice.displacement_max[i] / once.displacement_max[i], 1, 1e-9);
 		check_near(twice.energy_residual, 0, 1e-12);
 	}
-	assert_true(contacts > 2 * 140); // or the comparison would not say much
+	assert_true(contacts > 2 * 140); // otherwise the comparison covers too few contacts
 }
 
-/* A light body that the ground presses on a heavy one of a thousand times its frequency: 4e5 radians of their contact go by
- * in every sample in which they stay where they are, as far out as they ever were.
+/* The ground presses a light body on a heavy one of a thousand times its frequency: 4e5 radians of the contact per
+ * sample of sustained contact at rest, at the largest displacement so far.
  *
  *   k1 u1 + K p = 1,  k2 u2 - m1/m2 K p = 1,  u1 = u2 + p
  */
@@ -179,9 +179,9 @@ static void bodies_pressed_for_long_rest_where_their_springs_hold_them(void **st
 	}
 }
 
-/* A yielded body, damped so that it does not swing, that creeps to where its spring holds it with a light one pressed on it:
- * long before it is there its way over a cell of contact is below the rounding of where it is, and its piece would end
- * where it turned.
+/* A strongly damped body has yielded and creeps to its equilibrium with a light body in contact: long before
+ * equilibrium its displacement in a contact substep is below the rounding error of its position, and a velocity
+ * reversal would end its branch.
  *
  *   (k1 + k2 m2/m1) u = 1 + m2/m1
  */
@@ -209,15 +209,15 @@ static void a_yielded_body_creeps_to_rest_however_stiff_the_contact(void **state
 	}
 }
 
-/* A mass that the ground takes back from the wall before a cell of contact is over: its force has ended, but not its overlap,
- * where the sample does.  Where energy is accounted for every step looks for that. */
+/* The ground acceleration separates a mass from the wall within a contact substep: at the end of the sample its force
+ * has ended, but not its overlap.  With an energy balance, every step checks for the end of the force. */
 static void a_touch_shorter_than_a_cell_ends_with_its_force(void **state)
 {
 	(void)state;
-	const double rest = 0.5 * step; // of the sample that it begins in
+	const double rest = 0.5 * step; // remainder of the sample in which the contact begins
 	double ground[SAMPLES];
 	for (int t = 1; t < 20; t++) {
-		struct pound_task task = pressed(ground, 0, 6400, 0); // a cell is a sample
+		struct pound_task task = pressed(ground, 0, 6400, 0); // a contact substep is a sample
 		const double speed = (0.5 + 0.025 * t) * rest;
 		for (int i = 0; i < SAMPLES; i++)
 			ground[i] = 1;
@@ -234,8 +234,8 @@ static void a_touch_shorter_than_a_cell_ends_with_its_force(void **state)
 	}
 }
 
-/* After a plastic impact bodies alike go on as one, touching without a force once the overlap has died away; the motion of
- * both by mass is that of one oscillator all along.
+/* After a plastic impact identical bodies move together, in contact without a force once the overlap has decayed;
+ * their center of mass moves as one oscillator all along.
  *
  *   u = v m1/(m1 + m2) exp(-zeta w t) sin(wd t)/wd
  */

@@ -1,4 +1,4 @@
-/* unit_counts.c - which contacts count: none that is made of roundings, and every other one however weak. */
+/* unit_counts.c - which contacts count: none that consists of rounding errors, and every other one however weak. */
 #include <float.h>
 #include <math.h>
 
@@ -7,7 +7,7 @@
 #include "tests/support/check.h"
 #include "tests/support/floor_tasks.h"
 
-/* what is counted of the contacts of a task, by each who counts */
+/* the solvers whose counts are compared */
 enum { EVENT, EVENT_ONE, NEWMARK, CENTRAL, ADAPTIVE, COUNTERS };
 static const char *const names[] = {"event", "event, one lane", "newmark", "central", "adaptive"};
 
@@ -45,7 +45,7 @@ static struct count count_of(const struct pound_task *task, int who)
 static void a_contact_counts_by_what_it_changes_beside_the_largest_that_rounding_is_of(void **state)
 {
 	(void)state;
-	// 3 + (5 2 + 7 + 0.5 3 + 0.25) 2/0.5 = 78 of one body, and 1 + 0 of the other, after a minute
+	// 3 + (5 2 + 7 + 0.5 3 + 0.25) 2/0.5 = 78 for one body, and 1 + 0 for the other, after a minute
 	struct pound_counts c = {.body = {{-2, 3, 5, -7, 0.5, -0.25}, {0, -1, 0, 0, 0, 0}}, .time = 60};
 	struct pound_counts_scale scale = {0};
 	c.changed = 16 * DBL_EPSILON * 79 * (1 - 1e-9);
@@ -53,23 +53,23 @@ static void a_contact_counts_by_what_it_changes_beside_the_largest_that_rounding
 	check_near(scale.most, 79, 1e-13);
 	c.changed = 16 * DBL_EPSILON * 79 * (1 + 1e-9);
 	assert_true(pound_contact_counts(&c, &scale));
-	// in the first second it has forgotten nothing: 3 + 18.75 + 1
+	// in the first second nothing has been damped: 3 + 18.75 + 1
 	scale = (struct pound_counts_scale){0};
 	c.time = 1;
 	assert_true(pound_contact_counts(&c, &scale));
 	check_near(scale.most, 22.75, 1e-13);
-	// each step has its roundings
+	// each step has its rounding errors
 	c.steps = 3;
 	scale = (struct pound_counts_scale){0};
 	c.changed = 16 * DBL_EPSILON * 4 * 22.75 * (1 - 1e-9);
 	assert_false(pound_contact_counts(&c, &scale));
 	c.changed = 16 * DBL_EPSILON * 4 * 22.75 * (1 + 1e-9);
 	assert_true(pound_contact_counts(&c, &scale));
-	// and what was large stays what later ones are beside
+	// the largest scale so far also applies to later contacts
 	scale.most = 1e3;
 	assert_false(pound_contact_counts(&c, &scale));
 	check_near(scale.most, 1e3, 0);
-	// what changes speeds plainly needs no sum while the bodies are no faster than when it was taken
+	// a large change of speed needs no sum while the bodies are not faster than when the scale was computed
 	c.changed = 1;
 	c.body[0].u = 1e9;
 	assert_true(pound_contact_counts(&c, &scale));
@@ -81,7 +81,7 @@ static void a_contact_counts_by_what_it_changes_beside_the_largest_that_rounding
 
 /* ---- contacts without force ---- */
 
-/* Two bodies that touch at rest and differ by no more than a rounding of their frequency. */
+/* Two bodies in contact at rest whose frequencies differ by at most a rounding error. */
 static void alike_make(struct specimen *specimen, int number, double sign)
 {
 	specimen_alike(specimen, number, number % SPECIMEN_LAWS);
@@ -115,7 +115,7 @@ static void bodies_that_move_alike_have_no_contacts_in_any_motion_or_its_mirror_
 			}
 }
 
-/* A body on a wall without a gap that is shaken for 5 s and then for so long no more. */
+/* A body against a wall without a gap; the ground moves for 5 s, then rests for a number of seconds. */
 static void dead_make(struct specimen *specimen, int number, int seconds)
 {
 	static const double restitutions[] = {0, 0.3, 0.6, 0.9};
@@ -135,7 +135,7 @@ static void a_body_dead_at_rest_on_a_wall_does_not_go_on_counting(void **state)
 	(void)state;
 	for (int number = 0; number < 8; number++) {
 		int64_t first = -1;
-		// at 5 % of damping the motion is down to a rounding 36/(0.05 4 pi) = 57 s behind the last shock, or sooner
+		// with 5 % damping the motion is below rounding at most 36/(0.05 4 pi) = 57 s after the last shock
 		for (int who = EVENT; who < COUNTERS; who++) {
 			struct count counted[2];
 			for (int k = 0; k < 2; k++) {
@@ -150,12 +150,12 @@ static void a_body_dead_at_rest_on_a_wall_does_not_go_on_counting(void **state)
 				print_message("%d: %s\n", number, names[who]);
 			assert_true(counted[0].contacts > 0);
 			assert_int_equal(counted[1].contacts, counted[0].contacts);
-			// without any restitution the last of them does not end
+			// without restitution the last contact does not end
 			if (number % 4 > 0)
 				check_near(counted[1].time, counted[0].time, 0);
 			if (who == EVENT)
 				first = counted[0].contacts;
-			// what is near the limit counts for one and not for another, who took other steps
+			// contacts near the limit may count for one solver and not for another, which takes other steps
 			if (who <= EVENT_ONE)
 				assert_int_equal(counted[0].contacts, first);
 			check_near((double)counted[0].contacts, (double)first,
@@ -182,7 +182,7 @@ static void a_body_that_has_never_moved_has_no_contact(void **state)
 static void forces_of_1e_9_count_as_large_ones_do(void **state)
 {
 	(void)state;
-	// bodies alike but for that part of a frequency press each other in proportion to it: the same contacts
+	// if the frequencies differ by this fraction, the contact force is proportional to it: the same contacts
 	static const double parts[] = {1e-6, 1e-7, 1e-8, 1e-9};
 	for (int number = 0; number < 4; number++) {
 		struct pound_response before = {0};

@@ -1,4 +1,4 @@
-/* unit_exact.c - the march against closed forms: one impact, impacts on a wall, and the same bits at every lane count. */
+/* unit_exact.c - the exact solver against closed forms: one impact, impacts on a wall, and the same bits at every lane count. */
 #include "tests/support/check.h"
 
 #include <float.h>
@@ -50,7 +50,7 @@ static void a_plastic_impact_ends_with_one_velocity(void **state)
 {
 	(void)state;
 	struct pound_task task = specimen_impact(0, true, 1000);
-	task.n_samples = 101; // the overlap dies away as t exp(-w t), to 1e-47 of its height in this second
+	task.n_samples = 101; // the overlap decays as t exp(-w t), to 1e-47 of its largest value in this second
 	const struct pound_task_result r = march(&task);
 	check_near(rebound(&r), 0, 1e-15);
 	assert_int_equal(r.contacts, 1);
@@ -72,7 +72,7 @@ static void without_tension_the_rebound_is_that_of_release_at_zero_force(void **
 	check_near(rebound(&r), 0.135335283236612691894, 1e-12); // exp(-2)
 }
 
-/* Oscillator of 1 Hz on a wall, released at rest from -amplitude. */
+/* Oscillator of 1 Hz against a wall, released at rest from -amplitude. */
 static struct pound_task wall(double gap, double damping_ratio, double restitution, double stiffness_ratio)
 {
 	double k = 4 * PI * PI, stiffness = stiffness_ratio * k;
@@ -95,7 +95,7 @@ static struct pound_task wall(double gap, double damping_ratio, double restituti
 static void a_wall_is_met_every_half_period(void **state)
 {
 	(void)state;
-	// undamped and elastic: half a period free, then half a period of the contact's own oscillation, for ever
+	// undamped and elastic: half a period of free motion, then half a period of the contact's oscillation, and so on
 	const struct pound_task task = wall(0, 0, 1, 1000);
 	const struct pound_task_result r = march(&task);
 	double touch = 0.5 / sqrt(1001), period = 0.5 + touch;
@@ -105,7 +105,7 @@ static void a_wall_is_met_every_half_period(void **state)
 	check_near(r.first_contact, 0.25, 1e-14);
 	check_near(r.first_speed, 2 * PI, 1e-13);
 	check_near(r.contact_time, contacts * touch, 1e-11);
-	// each contact turns the speed round: the impulse of the contact spring is 2 v K/(K + k)
+	// each contact reverses the velocity: the impulse of the contact spring is 2 v K/(K + k)
 	check_near(r.impulse_max, 4 * PI * 1000 / 1001, 1e-11);
 	check_near(r.displacement_max[0], 1, 1e-12);
 }
@@ -113,14 +113,14 @@ static void a_wall_is_met_every_half_period(void **state)
 static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
 {
 	(void)state;
-	// a damped contact oscillation and a damped free one in turn: the end state follows in closed form
+	// damped contact oscillation and damped free oscillation alternate: the end state follows in closed form
 	const double xi = 0.02, e = 0.8, ratio = 500;
 	struct pound_task task = wall(0, xi, e, ratio);
 	const struct pound_task_result r = march(&task);
 	double w = 2 * PI, wd = w * sqrt(1 - xi * xi);
 	double c = task.bodies[0].damping + task.contact_damping, k = w * w * (1 + ratio);
 	double wc = sqrt(k - c * c / 4);
-	// from u = -1, v = 0 to the first crossing of 0 (speed v), then alternately touching and free
+	// from u = -1, v = 0 to the first crossing of 0 (speed v), then alternately contact and free motion
 	double t = (PI / 2 + asin(xi)) / wd, v = w * exp(-xi * w * t);
 	check_near(r.first_contact, t, 1e-13);
 	check_near(r.first_speed, v, 1e-12);
@@ -139,7 +139,8 @@ static void wall_impacts_lose_speed_by_restitution_and_damping(void **state)
 	check_near(r.u[0], -v / wd * exp(-xi * w * (20 - t)) * sin(wd * (20 - t)), 1e-12);
 }
 
-/* Displacement of a body pressed on a wall from rest by an acceleration of 1: of the whole system's frequency and damping ratio. */
+/* Displacement of a body in contact with a wall, from rest under an acceleration of 1; omega and zeta are of body and
+ * contact. */
 static double pressed_closed(double omega, double zeta, double t)
 {
 	const double root = omega * sqrt(fabs(zeta * zeta - 1)), decay = zeta * omega, fade = exp(-decay * t);
@@ -224,16 +225,16 @@ static void every_lane_count_gives_the_same_bits(void **state)
 		int64_t contacts = 0;
 		for (int t = 0; t < TASKS; t++)
 			contacts += one[t].contacts;
-		assert_true(contacts > 5 * TASKS); // or the comparison would not say much
+		assert_true(contacts > 5 * TASKS); // otherwise the comparison covers too few contacts
 		for (int lanes = 1; lanes <= 8; lanes++)
 			if (pound_exact_lanes(lanes, tasks, many, TASKS, scratch, NULL))
 				assert_memory_equal(one, many, sizeof one);
 	}
 }
 
-/* Samples of 0.6 and 0.5 rad, or of 1.95 and 1.63: the largest of them may lie 4 % below the largest displacement, which is
- * v/w, or 44 %.  Each may add the 16 roundings that its map is allowed.  In the longer signal more samples than can be noted
- * hold one as large. */
+/* Samples of 0.6 and 0.5 rad, or of 1.95 and 1.63: the largest sample may be 4 % or 44 % below the largest
+ * displacement, which is v/w.  Each sample may add the 16 rounding errors that its map is allowed.  In the longer
+ * signal, more samples than can be noted reach the same value. */
 static void a_largest_displacement_between_samples_is_that_of_the_motion(void **state)
 {
 	(void)state;
@@ -262,15 +263,15 @@ static void a_largest_displacement_between_samples_is_that_of_the_motion(void **
 		}
 }
 
-/* Every swing lies alike between its samples, up to 15 degrees off them, so that each may hold the largest displacement: there
- * is no room to note them all when a pulse of the ground makes the later ones 1 % larger. */
+/* Every cycle has the same phase at its samples, up to 15 degrees, so each may contain the largest displacement:
+ * there is no room to note them all before a ground pulse makes the later cycles 1 % larger. */
 static void more_swings_than_can_be_noted_have_their_largest_displacement(void **state)
 {
 	(void)state;
 	enum { SWINGS = 241, PULSE = 120 };
 	double ground[SWINGS] = {0};
 	const double h = 0.01, w = PI / 6 / h;
-	// its area is h times its height, and the velocity there, after whole periods, that of the start
+	// its area is h times its height; after whole periods the velocity equals the initial one
 	ground[PULSE] = -0.01 * w / h / sin(PI / 12);
 	struct pound_task task = {.ground = ground,
 	                          .n_samples = SWINGS,
@@ -287,7 +288,8 @@ static void more_swings_than_can_be_noted_have_their_largest_displacement(void *
 	check_near(mapped / stepped, 1, 16 * 2.2e-16 * SWINGS);
 }
 
-/* Energy is accounted for in single steps only: whole samples are to find what these do, on every law. */
+/* The energy balance is computed in single steps only: whole samples must give the same extremes as single steps, for
+ * every law. */
 static void whole_samples_find_the_largest_displacements_of_single_steps(void **state)
 {
 	(void)state;
@@ -325,12 +327,12 @@ static void the_energy_put_in_is_found_again(void **state)
 	for (int t = 0; t < TASKS; t++)
 		tasks[t].accounted = true;
 	pound_exact_lanes(0, tasks, results, TASKS, scratch, NULL);
-	// about 2e4 steps, each with a rounding error of the energy it moves
+	// about 2e4 steps, each with a rounding error of the energy it transfers
 	for (int t = 0; t < TASKS; t++)
 		check_near(results[t].energy_residual, 0, 2e4 * 2.2e-16);
 }
 
-/* Runs tasks together, at any lane count, and each alone. */
+/* Runs tasks together, at any lane count, and each alone, and compares the bits. */
 static void check_alone_as_together(const struct pound_task *tasks)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
@@ -353,7 +355,7 @@ static void a_run_does_not_depend_on_its_neighbours(void **state)
 	check_alone_as_together(tasks);
 }
 
-/* Separated and at rest in the end: when that is noticed is a simulation's own affair. */
+/* Bodies separated and at rest in the end: the time at which the solver detects it must depend on the one simulation only. */
 static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **state)
 {
 	(void)state;
@@ -374,7 +376,7 @@ static void a_motion_that_dies_away_does_not_depend_on_its_neighbours(void **sta
 	check_alone_as_together(tasks);
 }
 
-/* Keeping a neighbour's balance costs a run no step of its own. */
+/* The energy balance of another task in the lanes adds no step to a run. */
 static void a_run_does_not_depend_on_whose_energy_is_accounted_for(void **state)
 {
 	(void)state;
@@ -388,8 +390,8 @@ static void a_run_does_not_depend_on_whose_energy_is_accounted_for(void **state)
 	}
 }
 
-/* From the first instant of a contact on its overlap grows from 0: what a neighbour's contact, which ends with its force,
- * must be looked after for is none of its business. */
+/* From the start of a contact the overlap grows from 0: the checks that another task's contact needs, which ends by
+ * its force, must not affect the run. */
 static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(void **state)
 {
 	(void)state;
@@ -411,8 +413,8 @@ static void a_run_that_starts_with_an_impact_does_not_depend_on_its_neighbours(v
 	}
 }
 
-/* After a plastic impact bodies alike stay as they touch, but not their neighbours: every third task has such, every third
- * differs from them by stiffnesses so small that nothing of the difference is left over a cell. */
+/* After a plastic impact, identical bodies stay in contact.  One third of the tasks are such; another third differ
+ * only by subnormal stiffnesses, which have no effect over a contact substep; the others are ordinary. */
 static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
 {
 	(void)state;
@@ -438,8 +440,8 @@ static void a_run_does_not_depend_on_bodies_alike_beside_it(void **state)
 	check_alone_as_together(tasks);
 }
 
-/* A few short runs of one scene, one of each of some others, many of another, and then two by turns: those of one scene have
- * constants and maps in common from when the ones before are over.  Some keep an account, some have another law. */
+/* A few short runs of one scene, one run each of some other scenes, many of another, and then two scenes alternately:
+ * runs of one scene share constants and maps once slots become free.  Some have an energy balance, some another law. */
 static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **state)
 {
 	(void)state;
@@ -462,7 +464,7 @@ static void a_run_does_not_depend_on_what_it_has_in_common_with_others(void **st
 	}
 }
 
-/* Makes a task differ in one more number from those that differ in their laws alone. */
+/* Changes one more property of a task among tasks that differ in their laws only. */
 static void kin_spoil(struct pound_task *task, int which)
 {
 	double *const numbers[] = {&task->time_step,         &task->gap,
@@ -484,12 +486,12 @@ static void kin_spoil(struct pound_task *task, int which)
 	else if (which == NUMBERS + 4)
 		task->accounted = true;
 	else
-		task->bodies[0].u = -task->bodies[0].u; // a zero
+		task->bodies[0].u = -task->bodies[0].u; // changes the sign of a zero
 }
 
-/* Tasks that differ in their laws alone are one until a first one yields: four together where there are six, some that yield
- * at once, both at an instant, or never, and among them one that differs in something else.  In every other round the ground
- * falls silent meanwhile, in the last ones samples are too long for maps. */
+/* Tasks that differ in their laws only are simulated as one until the first yields: groups of six, of which four may
+ * run together; some yield at once, two at the same time, or never, and one differs in something else.  In every
+ * other round the ground comes to rest meanwhile; in the last rounds the samples are too long for maps. */
 static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void **state)
 {
 	(void)state;
@@ -505,7 +507,7 @@ static void a_run_does_not_depend_on_those_that_differ_in_their_laws_alone(void 
 			tasks[t].n_samples = SAMPLES - scene;
 			tasks[t].time_step = seed < 11 ? 0.01 : 0.1;
 			if (!tasks[t].contact)
-				tasks[t].bodies[1] = (struct pound_task_body){0}; // the left one alone
+				tasks[t].bodies[1] = (struct pound_task_body){0}; // the left body alone
 			if (member == 0 && seed % 2)
 				memset(ground + scene * SAMPLES + 100, 0, sizeof(double) * 400);
 			for (int i = 0; i < 2; i++) {

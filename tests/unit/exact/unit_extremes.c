@@ -1,10 +1,11 @@
-/* unit_extremes.c - the engine on stiff and extreme scenes: what holds for all of them, and a table of each.
+/* unit_extremes.c - the engine on stiff and extreme scenes: checks that hold for all scenes, and a table of the
+ * results.
  *
- *   1. Every value is finite, or NAN where the scene has no such value.
- *   2. The energy put in is found again to 1e-10 of itself.
- *   3. Contacts are bounded; where there are more of them than an interval may have, the run ends with a status.
- *   4. Over the first samples, before a rounding is amplified, the adaptive solver agrees as far as it agrees with
- *      itself. */
+ *   1. Every value is finite, or NAN if it is undefined in the scene.
+ *   2. The energy balance closes to 1e-10 of the energy put in.
+ *   3. The number of contacts is bounded; if an interval has more contacts than allowed, the run ends with a status.
+ *   4. Over the first samples, before rounding errors are amplified, the difference from the adaptive solver is no larger
+ *      than that solver's own error. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -36,7 +37,7 @@ enum ground { NOISE, ZEROS, SPIKE, STEP, RAMP, TO_AND_FRO };
 #define YIELD      FIELD(REAL, law.yield_displacement)
 #define ELASTIC_ON_HEAVY(gap) \
 	{{MASS, 1e6}, {K_RATIO, 1e8}, {EPS, 1}, {DAMPING, 0}, {DAMPING_2, 0}, {FREQUENCY, 20}, {GAP, gap}}
-#define LINEAR_2   FIELD(BOOL, oscillators[1].has_law) /* its own law is all zeros: linear */
+#define LINEAR_2   FIELD(BOOL, oscillators[1].has_law) /* the body's own law is all zeros: linear */
 // clang-format on
 
 struct change {
@@ -47,14 +48,14 @@ struct change {
 /* How a scene differs from the reference scene: 2 and 3.1 Hz, masses 1 and 1.7 kg, eps 0.6, K/k 100, no gap. */
 struct extreme {
 	const char *name;
-	struct change changes[CHANGES]; /* up to the first of nothing */
+	struct change changes[CHANGES]; /* the first empty element ends the list */
 	enum ground ground;
-	double amplitude;         /* [m/s2]  0: 1 */
-	int samples;              /* 0: SAMPLES */
-	double step;              /* [s]  0: 0.01 */
-	int compared;             /* samples over which the adaptive solver is to agree; 0: it cannot go there */
-	double contacts;          /* at most */
-	enum pound_status status; /* that the run ends with */
+	double amplitude; /* [m/s2]  0: 1 */
+	int samples;      /* 0: SAMPLES */
+	double step;      /* [s]  0: 0.01 */
+	int compared;    /* samples over which the adaptive solver must agree; 0: it cannot integrate the scene */
+	double contacts; /* upper bound */
+	enum pound_status status; /* expected status of the run */
 };
 
 // clang-format off
@@ -77,7 +78,7 @@ static const struct extreme extremes[] = {
 	{"mass ratio 1e-3", {{MASS, 1e-3}}, .compared = 61, .contacts = 100},
 	{"mass ratio 1e3", {{MASS, 1e3}}, .compared = 61, .contacts = 60},
 	{"mass ratio 1e6", {{MASS, 1e6}}, .compared = 61, .contacts = 60},
-	// pressed on each other at 2e7 Hz: short, as every radian of that is a step
+	// in contact at 2e7 Hz: short, as the adaptive solver needs a step for every radian
 	{"mass ratio 1e-6, K/k 1e8, pressed", {{MASS, 1e-6}, {K_RATIO, 1e8}}, STEP, .samples = 6, .step = 1e-4,
 	 .compared = 2, .contacts = 1},
 	{"mass ratio 1e6, K/k 1e8", {{MASS, 1e6}, {K_RATIO, 1e8}}, .compared = 11, .contacts = 2000},
@@ -91,7 +92,7 @@ static const struct extreme extremes[] = {
 	{"zeros", {{EPS, 0.6}}, ZEROS, .compared = 61, .contacts = 0},
 	{"one spike", {{EPS, 0.6}}, SPIKE, .compared = 61, .contacts = 60},
 	{"one spike and minutes of silence, K/k 1e8, eps 0", {{K_RATIO, 1e8}, {EPS, 0}}, SPIKE, .samples = 33001, .compared = 31, .contacts = 1000},
-	// every sample the ground takes back from a soft body what it has given since the last
+	// in every sample the ground reverses the velocity that it gave the soft body in the sample before
 	{"to and fro, frequency ratio 1e-3", {{FREQUENCY, 2e-3}, {GAP, 1e3}}, TO_AND_FRO, .samples = 21, .step = 1e-3,
 	 .compared = 21, .contacts = 0},
 	{"1e-300 m/s2", {{EPS, 0.6}}, .amplitude = 1e-300, .compared = 61, .contacts = 60},
@@ -111,28 +112,29 @@ static const struct extreme extremes[] = {
 	{"origin oriented, yields at 1e-12 m", {{LAW, ORIGIN_ORIENTED}, {YIELD, 1e-12}}, .compared = 31, .contacts = 60},
 	{"damping 0", {{DAMPING, 0}, {DAMPING_2, 0}}, .compared = 61, .contacts = 60},
 	{"damping 0, eps 1", {{DAMPING, 0}, {DAMPING_2, 0}, {EPS, 1}}, .compared = 61, .contacts = 80},
-	// the ground throws a ball at a wall over and over, ever lower, within an interval of one second
+	// under a constant ground acceleration a body bounces on the wall, lower each time, within an interval of 1 s
 	{"many contacts in one interval", {{WALL, 1}, {K_RATIO, 1e6}, {EPS, 0.9}, {GAP, 1e-3}}, STEP,
 	 .samples = 4, .step = 1, .compared = 4, .contacts = 200},
-	// and without losses, at 20 contacts a second for 1e5 seconds
+	// the same without energy loss: 20 contacts per second for 1e5 s
 	{"contacts without end in one interval", {{WALL, 1}, {EPS, 1}, {DAMPING, 0}, {GAP, 1e-4}}, STEP,
 	 .samples = 2, .step = 1e5, .status = POUND_CHATTER},
-	// a light body bounces without loss on a heavy one that comes up under it ever faster: by its phases in closed form 23340
-	// times in 0.2 ms, until it stays there; from a wider gap 307900 times in the interval, more than it may have
+	// a light body bounces without energy loss on a heavy one that approaches it with growing speed: in closed form
+	// 23340 bounces in 0.2 ms until sustained contact; from a wider gap 307900 bounces in the interval, more than
+	// allowed
 	{"elastic, mass ratio 1e6, K/k 1e8, gap 1e-20 m", ELASTIC_ON_HEAVY(1e-20), STEP, .samples = 2, .contacts = 23400},
 	{"elastic, mass ratio 1e6, K/k 1e8, gap 1e-15 m", ELASTIC_ON_HEAVY(1e-15), STEP, .samples = 2, .status = POUND_CHATTER},
 	{"pressed, K/k 1e8", {{WALL, 1}, {K_RATIO, 1e8}}, STEP, .samples = 31, .compared = 11, .contacts = 200},
 	{"pressed, K/k 1e8, eps 0", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 0}}, STEP, .samples = 31, .compared = 11, .contacts = 1},
 	{"pressed, K/k 1e8, eps 1", {{WALL, 1}, {K_RATIO, 1e8}, {EPS, 1}}, STEP, .samples = 31, .compared = 3, .contacts = 1},
-	// its velocity dies away to nothing, and no bound of it can prove that it still goes its way
+	// its velocity decays to zero, and no bound can prove that the velocity keeps its sign
 	{"creeping where it yielded, K/k 1e12, eps 0",
 	 {{WALL, 1}, {LAW, ELASTOPLASTIC}, {YIELD, 1e-15}, {K_RATIO, 1e12}, {EPS, 0}}, STEP, .samples = 20, .step = 0.05, .contacts = 1},
-	// 9e15 cells of contact in a sample
+	// 9e15 contact substeps in a sample
 	{"pressed ever more, K/k 2e33", {{WALL, 1}, {K_RATIO, 2e33}}, RAMP, .samples = 20, .contacts = 1},
-	// the contact swings for ever, never beyond where it swung first
+	// the contact oscillates without end; no peak exceeds the first one
 	{"pressed ever more, then swinging, K/k 1e10, damping 0, eps 1",
 	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e10}, {EPS, 1}}, RAMP, .samples = 60, .step = 0.1, .contacts = 1},
-	// it stands still once in every swing, 2e6 times in a sample
+	// the velocity is zero once in every cycle, 2e6 times in a sample
 	{"pressed ever more, swinging, K/k 1e14, damping 0, eps 1",
 	 {{WALL, 1}, {DAMPING, 0}, {K_RATIO, 1e14}, {EPS, 1}}, RAMP, .samples = 20, .step = 0.1, .contacts = 1},
 	{"pressed at rest, mass ratio 1e3, frequency ratio 1e3, K/k 1e4", {{K_RATIO, 1e4}, {MASS, 1e3}, {FREQUENCY, 2e3}, {DAMPING_2, 0.999}},
@@ -203,7 +205,7 @@ static struct run run(const struct specimen *specimen)
 	return r;
 }
 
-/* ---- finite ---- */
+/* ---- finite values ---- */
 
 static bool at_rest(const struct specimen *specimen)
 {
@@ -213,8 +215,8 @@ static bool at_rest(const struct specimen *specimen)
 	return rest;
 }
 
-/* Whether a scene has a value at all: no yield displacement of a linear law or of a wall, no demand of a body that
- * never moves and has none given. */
+/* Whether a measure is defined in a scene: a linear law or a wall has no yield displacement, and a body that never
+ * moves has no demand unless its yield displacement is given. */
 static bool defined(int measure, const struct specimen *specimen)
 {
 	const struct pound_scene *scene = &specimen->study.scene;
@@ -237,9 +239,9 @@ static void check_defined(const struct pound_response *r, const struct specimen 
 	}
 }
 
-/* ---- agreed on ---- */
+/* ---- agreement with the adaptive solver ---- */
 
-// what an error of a measure is a part of; the state at the end may be near 0
+// reference value for the relative error of a measure; the state at the end may be near 0
 static double scale(const struct pound_response *r, const struct pound_scene *scene, int measure)
 {
 	const char *name = oracle_measure_name(measure);
@@ -270,9 +272,9 @@ static int solver_of(const char *name)
 	return row;
 }
 
-/* Largest difference of any measure from the adaptive solver's over the first samples, relative.
+/* Largest relative difference of any measure from the adaptive solver over the first samples.
  *
- * Returns  own   how far that solver is from itself
+ * Returns  own   difference between two tolerances of the adaptive solver
  */
 static double disagreement(const struct specimen *specimen, int samples, double *own)
 {
@@ -299,7 +301,7 @@ static void print_number(double value)
 		print_message("  |");
 }
 
-/* A row of the table in the README. */
+/* A row of the table in engine/exact/extremes.md. */
 static void print_row(const char *name, const struct run *r, double apart, double own)
 {
 	print_message("| %s |", name);
@@ -313,7 +315,7 @@ static void print_row(const char *name, const struct run *r, double apart, doubl
 	print_message(" %.3g | %s |\n", 1e3 * r->seconds, pound_status_text(r->status));
 }
 
-/* Runs a specimen and checks what holds for all of them. */
+/* Runs a specimen and checks the conditions that hold for all scenes. */
 static struct run check_extreme(const struct extreme *row, const struct specimen *specimen)
 {
 	struct run r = run(specimen);
@@ -344,9 +346,9 @@ static void every_extreme_is_finite_balanced_bounded_and_agreed_on(void **state)
 	}
 }
 
-/* ---- grazing, and events at one instant ---- */
+/* ---- grazing, and simultaneous events ---- */
 
-/* A body that swings towards a wall, which it would reach at its largest displacement with this gap. */
+/* A body that moves towards a wall and touches it only if the gap is below its largest displacement, which is returned. */
 static double wall_make(struct specimen *specimen, const struct extreme *row)
 {
 	extreme_make(specimen, row);
@@ -361,10 +363,11 @@ static double wall_make(struct specimen *specimen, const struct extreme *row)
 	return most;
 }
 
-/* A body that only just reaches a wall, by the share d of its way, is with it for 2 v/a, with v the speed of its arrival
- * and a the acceleration that takes it back, v^2 = 2 a d u.  The spring (there is no dashpot) has not turned it by then:
+/* A body whose largest displacement u exceeds the gap by the fraction d stays in contact for 2 v/a, where v is its
+ * speed at impact and a its deceleration, v^2 = 2 a d u.  The contact spring (there is no dashpot) changes the
+ * velocity little by then:
  *
- *   impulse = K integral (v t - a t^2/2) = 2/3 K v^3/a^2, in proportion to d^(3/2)
+ *   impulse = K integral (v t - a t^2/2) = 2/3 K v^3/a^2, proportional to d^(3/2)
  */
 static void grazing_contacts_fade_with_the_power_three_halves_of_their_depth(void **state)
 {
@@ -381,9 +384,10 @@ static void grazing_contacts_fade_with_the_power_three_halves_of_their_depth(voi
 		const struct pound_response response = check_extreme(&row, &specimen).response;
 		double impulse = response.impulse_max;
 		if (k < 3)
-			assert_true(response.contact_count == 1); // however weak
+			assert_true(response.contact_count == 1); // however weak the contact
 		if (k == 1 || k == 2)
-			// the spring turns it by (K/m) (2 v/a)^2, 3e-4 at the deepest; d is known to some roundings over d
+			// the spring changes the velocity by (K/m) (2 v/a)^2, 3e-4 at the deepest; d has an error of some
+			// roundings over d
 			check_near(before / impulse, 1000, 1.5);
 		if (k > 2)
 			assert_true(impulse < 1e-3 * before);
@@ -392,8 +396,8 @@ static void grazing_contacts_fade_with_the_power_three_halves_of_their_depth(voi
 	specimen_free(&specimen);
 }
 
-/* They move as one, touching without a force, up to a yield point; from there their accelerations differ by what is left
- * of rounding, and by more only later. */
+/* The bodies move together, in contact without a force, until one yields; from there on their accelerations differ,
+ * at first only by rounding errors. */
 static void bodies_alike_until_one_yields_meet_a_bounded_number_of_times(void **state)
 {
 	(void)state;
@@ -415,15 +419,15 @@ static void bodies_alike_until_one_yields_meet_a_bounded_number_of_times(void **
 				struct run r = run(&specimen);
 				assert_int_equal(r.status, POUND_OK);
 				check_near(r.response.energy_residual, 0, balanced);
-				// each takes half a period of the contact, which is 40 ms at most, but for a few at an edge
+				// each takes half a period of the contact, at most 40 ms; a few at branch boundaries are shorter
 				const double faster = sqrt(contacts[k / 2].stiffness_ratio / 1e2);
 				assert_true(r.response.contact_count <= faster * (8 / 0.02));
 				specimen_free(&specimen);
 			}
 }
 
-/* A body that creeps goes less far than the rounding of where it is.  What it does must not hang on how often it is looked at:
- * the same ground in half the samples is followed by other maps, in other steps. */
+/* A creeping body moves less in a step than the rounding error of its displacement.  The result must not depend on
+ * the number of samples: the same ground motion with half the sample interval uses other maps and other steps. */
 static void bodies_that_creep_where_they_yielded_turn_there(void **state)
 {
 	(void)state;
@@ -439,14 +443,14 @@ static void bodies_that_creep_where_they_yielded_turn_there(void **state)
 			response[k] = r.response;
 			specimen_free(&specimen);
 		}
-		// impacts make more of a rounding, by orders of magnitude, not of this
+		// later impacts amplify a rounding error by orders of magnitude, but not these quantities
 		const struct pound_response *r = response;
 		check_near(r[1].impulse_max, r[0].impulse_max, 1e-10 * r[0].impulse_max);
 		check_near(r[1].displacement_max_1, r[0].displacement_max_1, 1e-10 * r[0].displacement_max_1);
 	}
 }
 
-/* What parts such bodies is below the rounding of what moves them, in contact and apart alike. */
+/* The accelerations that separate such bodies are below the rounding error of their terms, in contact and separated. */
 static void bodies_alike_but_for_roundings_part_or_press_and_do_not_chatter(void **state)
 {
 	(void)state;
@@ -484,10 +488,10 @@ static void events_at_one_instant_are_all_seen(void **state)
 	specimen_free(&specimen);
 }
 
-/* ---- silence ---- */
+/* ---- ground at rest ---- */
 
-/* Bodies that all but stick to each other lose half of their motion in a second: in minutes nothing is left of it, and a
- * second spike finds them as the first did. */
+/* Bodies in almost plastic contact lose half of their motion in a second: after minutes the motion is zero, and a
+ * second spike gives the same response as the first. */
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;
@@ -532,7 +536,7 @@ static void a_body_that_is_at_rest_in_silence_does_not_wait_for_the_other(void *
 
 enum { CORNERS = 100, CORNER_VALUES = 5, CORNER_SAMPLES = 5 };
 
-// every extreme at once: each field takes one of its values by chance, for some samples of noise
+// all extremes at once: each field takes one of its values at random, over a few samples of noise
 static const struct {
 	struct pound_field field;
 	int n;
@@ -554,7 +558,7 @@ static const struct {
 
 enum { SIDES = sizeof sides / sizeof sides[0] };
 
-/* Angular frequency of the bodies on the contact's spring. */
+/* Angular frequency of the two bodies on the contact spring. */
 static double contact_frequency(const struct pound_scene *scene)
 {
 	double k[2], yield = 0;
@@ -568,7 +572,7 @@ static double contact_frequency(const struct pound_scene *scene)
 
 static void corner_make(struct specimen *specimen, uint64_t *stream)
 {
-	// samples are as short as the contact asks, which takes a step for each radian while it lasts
+	// the sample interval is limited by the contact, which needs a step for each radian while it lasts
 	const double radians = 2e4;
 	struct extreme row = {.samples = CORNER_SAMPLES};
 	struct pound_scene *scene = &specimen->study.scene;

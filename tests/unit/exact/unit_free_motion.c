@@ -1,4 +1,4 @@
-/* unit_free_motion.c - whole samples by maps: what bounds a motion inside a sample, against maps over parts of it. */
+/* unit_free_motion.c - maps over whole samples: bounds of the motion inside a sample, against maps over fractions of it. */
 #include "tests/support/check.h"
 
 #include <math.h>
@@ -12,13 +12,13 @@
 // clang-format on
 #include "tests/support/scenes.h"
 
-/* a body in front of a sample of length h, at the end of which the ground's acceleration is next */
+/* a body at the start of a sample of length h; `next` is the ground acceleration at its end */
 struct sample {
 	struct lanes g;
 	double h, next;
 };
 
-/* A body whose sample is up to two radians long, damped up to twice the critical damping. */
+/* A body with a sample of up to two radians, damped up to twice the critical damping. */
 static struct sample sample_random(uint64_t *seed)
 {
 	struct sample s = {.h = 0.01, .next = specimen_uniform(seed, -0.5, 0.5)};
@@ -29,13 +29,13 @@ static struct sample sample_random(uint64_t *seed)
 	s.g.body[0].drive = 1;
 	s.g.body[0].offset = specimen_uniform(seed, -0.5, 0.5);
 	s.g.ground = specimen_uniform(seed, -0.5, 0.5);
-	const double unit = 1 / fmax(s.g.body[0].stiffness, 1); // where forcing and spring are alike
+	const double unit = 1 / fmax(s.g.body[0].stiffness, 1); // forcing and spring of equal size
 	s.g.u[0] = unit * specimen_uniform(seed, -0.5, 0.5);
 	s.g.v[0] = unit / s.h * specimen_uniform(seed, -0.5, 0.5);
 	return s;
 }
 
-/* The motion after a share of the sample: displacement, velocity, and what bounds it on the way. */
+/* The motion after a fraction of the sample: displacement, velocity, and bounds in between. */
 static struct cubic sample_move(const struct sample *s, double share)
 {
 	struct sample part = *s;
@@ -63,13 +63,13 @@ static void the_cubic_misses_the_motion_by_no_more_than_its_error(void **state)
 			const double t = (double)j / PARTS, b = 1 - t, u = sample_move(&s, t).u;
 			const double cubic = b * b * b * s.g.u[0] + 3 * b * b * t * whole.b1 + 3 * b * t * t * whole.b2 +
 			                     t * t * t * whole.u;
-			// the error is that of the inner points: it lifts the cubic by 3/4 of it in the middle
+			// the error of the inner points raises the cubic by 3/4 of it in the middle
 			const double lifted = 3 * t * b * whole.error;
 			assert_true(fabs(u - cubic) <= lifted);
 			nearest = fmax(nearest, fabs(u - cubic) / lifted);
 		}
 	}
-	assert_true(nearest > 0.5); // or it would be wider than it need be
+	assert_true(nearest > 0.5); // otherwise the bound would be wider than necessary
 }
 
 static void no_velocity_inside_is_below_the_bound_of_it(void **state)
@@ -112,7 +112,8 @@ static void two_halves_of_a_sample_are_the_whole(void **state)
 	}
 }
 
-/* With velocity along - cos(phase) a body goes back for 2 acos(along) radians of the phase, by 2 (sin a - a cos a). */
+/* With the velocity along - cos(phase), a body moves back for 2 acos(along) radians of the phase, by
+ * 2 (sin a - a cos a). */
 static void a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said(void **state)
 {
 	(void)state;
@@ -121,13 +122,13 @@ static void a_swing_that_is_just_ahead_takes_a_body_back_by_no_more_than_is_said
 		const double a = 2 * asin(sqrt(0.5 * share)); // acos(1 - share) to all digits
 		const double way = a > 0.01 ? sin(a) - a * cos(a) : a * a * a * (1.0 / 3 - a * a / 30),
 		             back = 2 * radian * way;
-		// the share is known but for the rounding of along
+		// the fraction has the rounding error of `along`
 		assert_false(sustained_steady(along, 1, 0, radian, 0.999 * back / SUSTAINED_ROUNDING));
 		assert_true(sustained_steady(along, 1, 0, radian, 2 * back / SUSTAINED_ROUNDING));
 		assert_true(sustained_steady(1 + share, 1, 0, radian, 0));
 		assert_false(sustained_steady(-share, 1, 0, radian, 1));
 	}
-	assert_false(sustained_steady(0, 0, 0, 1, 1)); // it stands still: its velocity has no sign
+	assert_false(sustained_steady(0, 0, 0, 1, 1)); // at rest the velocity has no sign
 	assert_false(sustained_steady(1, 1, NAN, 1, 1));
 }
 

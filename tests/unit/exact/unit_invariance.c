@@ -1,5 +1,5 @@
-/* What must not change, or change in a known way, when a scene is written in other units, mirrored or resampled.
- * No oracle: the engine is compared with itself. */
+/* Quantities that must not change, or change in a known way, if a scene is written in other units, mirrored or
+ * resampled.  There is no oracle: the engine is compared with itself. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -9,10 +9,10 @@
 
 enum { SCENES = 40, SAMPLES = 301 };
 
-// two runs whose roundings differ drift apart by what the motion amplifies: in 3 s less than 10^4, so these scenes
+// the motion amplifies the difference of rounding errors between two runs: by less than 10^4 in 3 s, in these scenes
 static const double amplified = 1e4 * 30 * DBL_EPSILON * SAMPLES;
 
-/* Powers of the units in a measure: value times mass^m length^l time^t. */
+/* Exponents of the units of a measure: value times mass^m length^l time^t. */
 struct dimension {
 	const char *name;
 	int mass, length, time;
@@ -33,7 +33,7 @@ static double in_units(int measure, double mass, double length, double time)
 	return pow(mass, d->mass) * pow(length, d->length) * pow(time, d->time);
 }
 
-/* Writes a scene in units that are smaller by these factors: the numbers grow. */
+/* Writes a scene in units that are smaller by these factors, so that the numbers grow. */
 static void rescale(struct specimen *specimen, double mass, double length, double time)
 {
 	struct pound_scene *scene = &specimen->study.scene;
@@ -50,7 +50,7 @@ static void rescale(struct specimen *specimen, double mass, double length, doubl
 		specimen->record[t] *= length / (time * time);
 }
 
-// allowed: relative to the measure, or to the largest motion for the state at the end
+// allowed: relative to the measure, or for the end state relative to the largest motion
 static void check_alike(const struct pound_response *got, const struct pound_response *want, double mass,
                         double length, double time, double allowed, int scene)
 {
@@ -109,7 +109,7 @@ static void any_other_units_change_only_the_last_digits(void **state)
 	compare_in_units(1, 1, 3.7, amplified);
 }
 
-/* A quarter of pi is no power of two. */
+/* A quarter of pi is not a power of two, so results are rounded differently. */
 static void a_stronger_ground_motion_leaves_demands_and_ratios_as_they_are(void **state)
 {
 	(void)state;
@@ -194,7 +194,7 @@ static void ground_at_rest_before_the_motion_changes_no_bit(void **state)
 	}
 }
 
-/* The motion is linear between samples by definition, so samples on those lines say nothing new. */
+/* The motion is linear between samples by definition, so additional samples on these lines do not change it. */
 static void samples_between_samples_change_only_the_last_digits(void **state)
 {
 	(void)state;
@@ -218,10 +218,10 @@ static void samples_between_samples_change_only_the_last_digits(void **state)
 	}
 }
 
-/* Nonlinear laws must respond as the linear one, in every fourth scene: those are linear.
+/* Nonlinear laws must give the same response as the linear law, in every fourth scene (the linear scenes).
  *
- * Given    yield      their yield displacement [m]
- *          own        they keep each scene's second slope; otherwise it is the first
+ * Given    yield      yield displacement of the laws [m]
+ *          own        keep each scene's second stiffness; otherwise it equals the first
  */
 static void check_linear(double yield, bool own)
 {
@@ -255,7 +255,7 @@ static void a_hardening_ratio_of_one_is_linear(void **state)
 	check_linear(0.002, false);
 }
 
-/* Kinetic energy, springs and contact spring of linear bodies.  In closed contact p > 0, apart p <= 0. */
+/* Energy of the motion, of the springs and of the contact spring, of linear bodies.  p > 0 in contact, p <= 0 separated. */
 static double energy(const struct pound_scene *scene, const struct pound_response *r)
 {
 	double sum = 0, k_max = 0;
@@ -275,7 +275,7 @@ static void energy_only_falls_once_the_ground_is_still(void **state)
 	(void)state;
 	enum { STILL = 101, STEP = 10 };
 	for (int k = SPECIMEN_LAWS; k < SPECIMEN_LAWS * SCENES; k += 2 * SPECIMEN_LAWS) {
-		// linear, with a contact that may pull: all its energy is in the springs
+		// linear, with contact that may pull: all stored energy is in the springs
 		struct specimen specimen;
 		specimen_random(&specimen, k, 0.01, SAMPLES);
 		struct pound_scene *scene = &specimen.study.scene;
@@ -293,7 +293,7 @@ static void energy_only_falls_once_the_ground_is_still(void **state)
 	}
 }
 
-/* The filter's corner follows its frequency and the duration its period, so time has no unit of its own. */
+/* The filter's corner is proportional to its frequency and the duration to its period, so time has no other scale. */
 static void twice_every_frequency_and_half_the_step_leaves_the_paper_s_outputs_bit_for_bit(void **state)
 {
 	(void)state;

@@ -1,5 +1,6 @@
-/* unit_nonlinear_contact.c - contacts of every model on chains: isolated impacts and rest against closed forms and known answers of other
- * programs, rows of buildings by their balance of energy, and the same bits at every lane count. */
+/* unit_nonlinear_contact.c - contacts of every model in chains: isolated impacts and equilibrium against closed forms
+ * and known answers of other programs, rows of buildings by their energy balance, and the same bits at every lane
+ * count. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -39,7 +40,7 @@ static const unsigned EVERYTHING = POUND_CHAIN_DRIFTS | POUND_CHAIN_DISPLACEMENT
 
 /* ---- isolated impacts ---- */
 
-/* A free body that the ground gives 0.3 m/s meets a wall; its spring has a period of weeks. */
+/* The ground gives a free body 0.3 m/s before it meets a wall; the body's spring has a period of weeks. */
 static void isolated(const struct pound_contact_law *law, double mass, struct outcome *o)
 {
 	static double ground[SAMPLES] = {-20, -20};
@@ -69,7 +70,7 @@ static void isolated_impacts_are_those_of_the_known_answers(void **state)
 	static const struct {
 		const char *model;
 		struct pound_contact_law law;        // its dashpot is z, x or D
-		double restitution, duration, force; // 0: not known
+		double restitution, duration, force; // 0: unknown
 	} cases[] = {
 	    {"linear", {.stiffness = 1e5, .tension = true}, 1, .00811155735194722, 77.4596669241483},
 	    {"modified_kelvin_voigt",
@@ -106,7 +107,7 @@ static void isolated_impacts_are_those_of_the_known_answers(void **state)
 	}
 }
 
-/* 2.943275184324705 p_max/v with p_max = (5 m v^2/(4 K))^(2/5), whatever mass and stiffness. */
+/* 2.943275184324705 p_max/v with p_max = (5 m v^2/(4 K))^(2/5), for any mass and stiffness. */
 static void a_hertz_contact_lasts_as_long_as_its_closed_form(void **state)
 {
 	(void)state;
@@ -144,7 +145,7 @@ static void exact_calibrations_give_the_restitution_that_was_asked_for(void **st
 			}
 }
 
-/* Two free bodies that the ground gives one speed meet their walls at one instant: each contact is what it is by itself. */
+/* Two free bodies of the same speed meet their walls at the same time: each contact is as in a separate run. */
 static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
 {
 	(void)state;
@@ -196,8 +197,9 @@ static void contacts_that_begin_at_one_instant_are_those_of_each(void **state)
 
 /* ---- rigid contacts ---- */
 
-/* A body that a constant acceleration of 1 m/s2 drives against a wall 10 mm away hops with e = 0.5, the first time after
- * (2 gap/a)^1/2, and stays from three times that on, until the ground turns at 0.81 s. */
+/* A constant acceleration of 1 m/s2 drives a body against a wall 10 mm away; it bounces with e = 0.5 from
+ * (2 gap/a)^1/2 on, and is in sustained contact from three times that time until the ground acceleration changes sign
+ * at 0.81 s. */
 static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 {
 	(void)state;
@@ -224,13 +226,13 @@ static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 	check_near(o.links[0][POUND_LINK_TIME], 0.81 - .424264068711929, 1e-12);
 	// speeds of 0.5^k (2 a gap)^1/2 down to 1e-3
 	assert_true(o.links[0][POUND_LINK_CONTACTS] == 8);
-	// until 0.79 s at 2 N, then down to 0 in 0.02 s
+	// 2 N until 0.79 s, then down to 0 in 0.02 s
 	check_near(o.links[0][POUND_LINK_IMPULSE_MAX], 2 * (0.79 - .424264068711929) + 0.02, 1e-12);
 	check_near(o.links[0][POUND_LINK_FORCE_MAX], 2, 1e-12);
 	// the ground after 0.81 s: 0.5 (t - 0.81)/0.01
 	check_near(o.floors[0][POUND_FLOOR_END_V], -25 * 0.19 * 0.19, 1e-11);
 	check_near(o.result.energy_residual, 0, 1e-12);
-	// without restitution it stays from the first contact on
+	// without restitution it is in sustained contact from the first impact on
 	link.law.restitution = 0;
 	run(&task, 0, &o);
 	check_near(o.links[0][POUND_LINK_TIME], 0.81 - .141421356237310, 1e-12);
@@ -239,7 +241,7 @@ static void hops_of_a_rigid_contact_end_at_the_wall(void **state)
 
 /* ---- rows ---- */
 
-/* Three buildings of two stories under noise, each contact of a model of its own. */
+/* Three buildings of two stories under noise; each contact has another model. */
 struct touch_row {
 	double ground[SAMPLES];
 	struct pound_chain_floor floors[FLOORS];
@@ -323,7 +325,7 @@ static void every_lane_count_gives_the_same_bits(void **state)
 			memset(&other, 0, sizeof other);
 			other.result = (struct pound_chain_result){.floors = other.floors[0], .links = other.links[0]};
 			if (!pound_chain_lanes(lanes[k], &s.task, &other.result, 1, scratch, NULL))
-				continue; // not on this machine
+				continue; // not supported by this processor
 			assert_memory_equal(one.floors, other.floors, sizeof one.floors);
 			assert_memory_equal(one.links, other.links, sizeof one.links);
 			assert_true(one.result.energy_residual == other.result.energy_residual);

@@ -1,4 +1,5 @@
-/* unit_observer.c - the instants that an observer gets: closed forms, another solver, no holes, the same bits anywhere. */
+/* unit_observer.c - the instants that an observer receives: closed forms, another solver, no gaps in time, the same
+ * bits everywhere. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -60,7 +61,7 @@ static void an_isolated_impact_is_two_events(void **state)
 			touching += i > 0 && story.at[i - 1].touching ? now->elapsed : 0;
 			if (now->sampled)
 				continue;
-			// they meet after 10 cm at 1.5 m/s, and leave with the restitution
+			// the bodies meet after 10 cm at 1.5 m/s, and separate with the restitution
 			check_near(now->time, 0.1 / 1.5 + events * lasts, 1e-14);
 			check_near(now->v[0] - now->v[1], events ? -1.5 * e / 100 : 1.5, 1e-12);
 			check_near(now->overlap, 0, 0);
@@ -72,7 +73,7 @@ static void an_isolated_impact_is_two_events(void **state)
 	}
 }
 
-/* Every sample is reported, in the order of time, and between two of them what elapses is the sample step. */
+/* Every sample is reported, in order of time, and the elapsed times between two samples add up to the sample step. */
 static void check_whole(const struct pound_task *task)
 {
 	const double h = task->time_step;
@@ -82,7 +83,7 @@ static void check_whole(const struct pound_task *task)
 		const struct pound_instant_of_task *now = &story.at[i];
 		assert_true(now->elapsed >= 0);
 		elapsed += now->elapsed;
-		// steps, a few hundred at the most, each with a rounding of what was left of the interval
+		// up to a few hundred steps, each with a rounding error of the remainder of the interval
 		const double rounded = 1e-13 * h, time = samples > 0 ? (samples - 1) * h + elapsed : 0;
 		check_near(now->time, time, rounded + 2 * DBL_EPSILON * time);
 		if (!now->sampled || (samples > 0 && elapsed == 0))
@@ -101,7 +102,7 @@ static void instants_leave_no_hole(void **state)
 	(void)state;
 	for (int number = 0; number < 300; number++) {
 		struct specimen specimen;
-		// every other one is at rest in the end, pressed bodies from within an interval on
+		// every other one is at rest in the end, and bodies in contact come to rest within an interval
 		if (number % 2)
 			specimen_creeping(&specimen, number, 1);
 		else
@@ -113,7 +114,7 @@ static void instants_leave_no_hole(void **state)
 	}
 }
 
-/* Bodies that touch at rest, before the ground moves and long after. */
+/* Bodies in contact at rest, before the ground moves and long after. */
 static void instants_go_on_in_silence(void **state)
 {
 	(void)state;
@@ -133,7 +134,7 @@ static void instants_go_on_in_silence(void **state)
 	}
 }
 
-/* Who is observed takes other steps, and moves the same way. */
+/* An observed task takes other steps, but has the same motion. */
 static void an_observed_motion_is_that_of_the_unobserved(void **state)
 {
 	(void)state;
@@ -145,7 +146,7 @@ static void an_observed_motion_is_that_of_the_unobserved(void **state)
 		const struct pound_task_result r = march(&task), o = observe(task, 0, &story);
 		assert_int_equal(o.status, r.status);
 		assert_int_equal(o.contacts, r.contacts);
-		// 4 s of impacts: roundings of 1e-16 grow by orders of magnitude, not to this
+		// in 4 s of impacts rounding errors of 1e-16 grow by orders of magnitude, but stay below this
 		double size = fmax(r.displacement_max[0], 1e-3), touching = 0;
 		check_near(o.impulse_max, r.impulse_max, 1e-9 * fmax(r.impulse_max, 1e-2));
 		for (int i = 0; i < POUND_OSCILLATORS; i++) {
@@ -165,7 +166,7 @@ static void an_observed_motion_is_that_of_the_unobserved(void **state)
 	assert_true(touched > 30 && events > 64 * 10);
 }
 
-/* Another solver, which shares no step with this one: random scenes for 1 s, at 1e-12. */
+/* The adaptive solver, which shares no step with the exact one: random scenes for 1 s, at 1e-12. */
 static void an_observed_motion_is_that_of_the_adaptive_solver(void **state)
 {
 	(void)state;
@@ -185,7 +186,7 @@ static void an_observed_motion_is_that_of_the_adaptive_solver(void **state)
 	}
 }
 
-/* ---- the same bits anywhere ---- */
+/* ---- the same bits everywhere ---- */
 
 static void check_same(const struct story *a, const struct story *b)
 {
@@ -222,7 +223,7 @@ static void every_lane_count_reports_the_same_bits(void **state)
 	}
 }
 
-/* Some of many tasks are observed, among them one that differs from its neighbours by that alone. */
+/* Some of many tasks are observed; one of these differs from its neighbor only by being observed. */
 static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 {
 	(void)state;
@@ -257,7 +258,7 @@ static void an_observer_changes_nothing_for_others_nor_they_for_it(void **state)
 		specimen_free(&specimens[s]);
 }
 
-/* A story that need not hear of every sample. */
+/* An observer that does not need every sample. */
 struct short_story {
 	struct story *story;
 	double most[2];
@@ -310,7 +311,7 @@ static void what_is_passed_is_in_the_whole_story_and_nowhere_the_largest(void **
 			assert_true(pound_exact_lanes(lanes, &task, &result, 1, scratch, NULL));
 			check_near(result.u[0], same.u[0], 0);
 			check_near(result.v[1], same.v[1], 0);
-			// in order, each of them bit for bit, and the largest of all that are left out
+			// the reported instants are a subsequence with equal bits, and `most` covers the omitted ones
 			double most[2] = {0, 0};
 			int k = 0;
 			for (int i = 0; i < story.n; i++) {

@@ -1,4 +1,4 @@
-/* The oracle on closed forms and on answers computed elsewhere, before it judges anything. */
+/* The oracle against closed forms and answers by other programs, before tests use it as a reference. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -7,7 +7,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// printed with so many digits behind the point
+// half a unit of the last of so many decimals
 static double half_digit(int digits)
 {
 	return 0.5 * pow(10, -digits) * 1.001;
@@ -22,8 +22,8 @@ static struct pound_response respond(const struct specimen *specimen, double rad
 	return oracle_response(&specimen->study.scene, &motion, &method, start, trace);
 }
 
-/* Two bodies of 1 and 3 kg on springs so soft that they do not matter ((2 pi 1e-6 Hz 0.1 s)^2 = 4e-13), one of them
- * moving at 1 m/s when they meet. */
+/* Two bodies of 1 and 3 kg on springs of negligible stiffness ((2 pi 1e-6 Hz 0.1 s)^2 = 4e-13); one of them moves at
+ * 1 m/s when they collide. */
 static double rebound(double restitution, bool tension, double *duration)
 {
 	struct specimen specimen;
@@ -70,7 +70,7 @@ static void a_contact_that_cannot_pull_leaves_faster(void **state)
 	}
 }
 
-/* With zero gap the wall only makes the oscillator stiffer and more damped while u > 0, so every half swing is a
+/* With zero gap the wall only makes the oscillator stiffer and more damped while u > 0, so every half cycle is a
  * damped half sine of its own frequency. */
 static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 {
@@ -98,15 +98,16 @@ static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 		check_near(contact->duration, together, 1e-11);
 		check_near(contact->speed, speed, 1e-11 * speed);
 		check_near(contact->departure, speed * slower_touching, 1e-11 * speed);
-		// of F = K u + C u' over m u'' + (c + C) u' + (k + K) u = 0
+		// for F = K u + C u' and m u'' + (c + C) u' + (k + K) u = 0
 		check_near(contact->impulse, 100.0 / 101.0 * speed * (1 + slower_touching), 1e-11 * speed);
 		start += apart + together;
 		speed *= slower * slower_touching;
 	}
 }
 
-/* A rigid wall at D below the amplitude, no damping: the next impact comes (2/w)(pi - atan2(v+/w, D)) later. A
- * contact spring of ratio R lasts (pi/w) R^-1/2 and indents (v/w) R^-1/2, so that is missed by R^-1/2. */
+/* A rigid wall at D below the amplitude, no damping: the next impact follows after (2/w)(pi - atan2(v+/w, D)).  A
+ * contact spring of stiffness ratio R takes (pi/w) R^-1/2 and is compressed by (v/w) R^-1/2, so the error is of order
+ * R^-1/2. */
 static void a_wall_with_a_gap_tends_to_the_rigid_one_as_the_root_of_its_stiffness(void **state)
 {
 	(void)state;
@@ -163,7 +164,7 @@ static void the_references_come_out_to_their_printed_digits(void **state)
 		struct pound_response r = respond(&specimen, 0.002, NULL, &trace);
 		struct pound_response coarse = respond(&specimen, 0.004, NULL, NULL);
 		specimen_free(&specimen);
-		// 12 digits are printed; the record stands for the half sine to (pi 5e-4 / 0.5)^4 / 100 = 1e-12
+		// 12 digits are printed; the record approximates the half sine to (pi 5e-4 / 0.5)^4 / 100 = 1e-12
 		double printed = 1e-11;
 		assert_int_equal(trace.n_contacts, reference->contacts);
 		check_near(trace.contacts[0].start, reference->first_start, 5e-11);
@@ -205,7 +206,7 @@ static void every_contact_of_the_first_reference_comes_out(void **state)
 static void an_oscillator_under_a_half_sine_force_follows_the_textbook(void **state)
 {
 	(void)state;
-	// by straight lines between the samples, and by the half sine itself
+	// for linear interpolation between the samples, and for the half sine
 	static const double smooth[] = {.0328,  .2332, .6487, 1.1605, 1.5242,
 	                                1.4814, .9245, .0593, -.7752, -1.2718};
 	struct specimen specimen;
@@ -219,7 +220,7 @@ static void an_oscillator_under_a_half_sine_force_follows_the_textbook(void **st
 	}
 }
 
-// work done on a law (k = 1, yield 1) along straight strokes between turning points
+// work done on a law (k = 1, yield 1) along straight paths between reversals
 static double work(struct oracle_law *law, const double *turns, int n)
 {
 	enum { STEPS = 1000 };
@@ -256,8 +257,8 @@ static void an_origin_oriented_law_loses_energy_on_the_first_push_only(void **st
 	check_near(work(&law, (double[]){0, -2, 0}, 3), 0.475, 1e-12);
 }
 
-/* Free period of a nonlinear elastic oscillator (initial period 1, yield 1) over its initial one: a quarter is a piece
- * of a sine up to the yield displacement and a piece of a cosine about 1 - 1/r beyond. */
+/* Free period of a nonlinear elastic oscillator (initial period 1, yield 1) over its initial one: a quarter is a
+ * segment of a sine up to the yield displacement and a segment of a cosine about 1 - 1/r beyond. */
 static double lengthened_period(double mu, double r)
 {
 	double v0 = sqrt(1 + 2 * (mu - 1) + r * (mu - 1) * (mu - 1)), centre = 1 - 1 / r;
@@ -307,7 +308,7 @@ static void the_error_falls_with_the_fourth_power_of_the_step(void **state)
 		struct pound_response c = specimen_oracle(&specimen, 0.01);
 		specimen_free(&specimen);
 		assert_true(c.contact_count > 3);
-		// 16; a quarter to spare for the next power
+		// 16, with a tolerance of 4 for the next power of the step
 		check_near((a.impulse_max - b.impulse_max) / (b.impulse_max - c.impulse_max), 16, 4);
 	}
 }
@@ -331,7 +332,7 @@ static void locating_nothing_gives_the_same_answers_in_the_limit(void **state)
 			               fabs(got.displacement_max_2 / want.displacement_max_2 - 1);
 		}
 		specimen_free(&specimen);
-		// a contact begins and ends up to one step late, of pi / 0.002 steps: amplified by the later contacts
+		// a contact begins and ends up to one step of pi / 0.002 late; later contacts amplify the error
 		assert_true(missed[1] < 0.002);
 		assert_true(missed[1] < missed[0]);
 	}
@@ -352,7 +353,7 @@ static void the_yield_displacement_is_the_elastic_one_over_the_reduction_factor(
 	check_near(plain.yield_displacement_2, linear.displacement_max_free_2 / 3, 1e-12);
 	assert_true(isnan(linear.yield_displacement_1) && isnan(linear.demand_2));
 
-	// Figure 3: from 1 at f_e = 0 to mu_d at f_e = f / 6; the motion itself stays the record
+	// Figure 3: from 1 at f_e = 0 to mu_d at f_e = f / 6; the motion is still the record
 	specimen_law(&specimen, "elastoplastic", 0);
 	while (strcmp(pound_excitation_name(scene->excitation.type), "kanai_tajimi") != 0)
 		scene->excitation.type--;

@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// of the largest of the compared quantity: a few thousand steps of a few roundings each
+// relative to the largest value of the compared quantity: a few thousand steps of a few rounding errors each
 static const double rounding = 1e-12;
 
 /* Known answers: the half sine. */
@@ -18,7 +18,7 @@ static void the_half_sine_references_come_out(void **state)
 		const struct specimen_reference *want = &specimen_references[k];
 		struct specimen specimen;
 		specimen_init(&specimen);
-		// the record stands for the half sine to (pi 5e-4 / 0.5)^4 / 100 = 1e-12
+		// the record approximates the half sine to (pi 5e-4 / 0.5)^4 / 100 = 1e-12
 		specimen_reference(&specimen, want, 5e-4);
 		struct pound_response got = specimen_engine(&specimen);
 		specimen_free(&specimen);
@@ -41,7 +41,7 @@ static void the_contacts_of_the_first_reference_last_as_long_as_known(void **sta
 	double together = .0116569436277 + .0113459956214 + .0114358134709 + .0115042978507 + .0114795325852 +
 	                  .0118046420015 + .0116096075632;
 	check_near(specimen_engine(&specimen).contact_time, together, 1e-11);
-	// half way between the first contact's start and end, and between the first two contacts
+	// halfway between the start and the end of the first contact, and between the first two contacts
 	specimen.study.scene.excitation.n_record = 1505;
 	struct pound_response open = specimen_engine(&specimen);
 	assert_true(open.contact_count == 1);
@@ -54,7 +54,7 @@ static void the_contacts_of_the_first_reference_last_as_long_as_known(void **sta
 static void the_half_sine_shock_spectrum_comes_out(void **state)
 {
 	(void)state;
-	// pulse over period, largest pseudo-acceleration over the pulse's peak, undamped
+	// pulse duration over period; largest pseudo-acceleration over the peak of the pulse; undamped
 	static const double spectrum[][2] = {
 	    {0.1, .396273548},      {0.25, .942809042}, {0.5, 1.570796327}, {0.75, 1.763355757},
 	    {0.80994, 1.768457654}, {1, 1.732050808},   {1.5, 1.5},         {2, 1.268075355},
@@ -66,7 +66,7 @@ static void the_half_sine_shock_spectrum_comes_out(void **state)
 	scene->contact.present = false;
 	scene->oscillators[0].damping_ratio = 0;
 	for (size_t k = 0; k < sizeof spectrum / sizeof spectrum[0]; k++) {
-		// 2000 samples in the pulse: (pi / 2000)^4 / 100 = 6e-14; two periods after it
+		// 2000 samples in the pulse: (pi / 2000)^4 / 100 = 6e-14; then two periods
 		specimen_half_sine(&specimen, 1, 1, ceil(1 + 2 / spectrum[k][0]), 5e-4);
 		scene->oscillators[0].frequency_hz = spectrum[k][0];
 		double w = 2 * pi * spectrum[k][0];
@@ -88,8 +88,8 @@ static void an_oscillator_under_sampled_force_follows_the_textbook(void **state)
 
 /* One impact. */
 
-/* A mass on a spring too soft to matter ((2 pi 1e-7 Hz 1 s)^2 = 4e-13) is set moving at 1 m/s by a triangle of ground
- * acceleration and meets the wall in free motion. */
+/* A mass on a spring of negligible stiffness ((2 pi 1e-7 Hz 1 s)^2 = 4e-13) gets a velocity of 1 m/s from a triangle
+ * of ground acceleration and meets the wall in free motion. */
 static double rebound(double restitution, bool tension, double *duration)
 {
 	enum { SAMPLES = 101 };
@@ -141,12 +141,12 @@ static void a_plastic_impact_that_may_pull_stops_the_body(void **state)
 	(void)state;
 	double duration, v = rebound(0, true, &duration);
 	check_near(v, 0, rounding);
-	// critically damped, p = v t exp(-w t): the spring that does not matter, 2e-17 of the contact's, takes over late
+	// critically damped, p = v t exp(-w t): the oscillator's spring, 2e-17 of the contact's, ends the contact late
 	assert_true(duration > 30);
 }
 
-/* With zero gap the wall only makes the oscillator stiffer and more damped while u > 0, so every half swing is a
- * damped half sine of its own frequency.  The state of free motion after the pulse is the engine's own of a shorter run. */
+/* With zero gap the wall only makes the oscillator stiffer and more damped while u > 0, so every half cycle is a
+ * damped half sine of its own frequency.  The state after the pulse is computed by the engine in a shorter run. */
 static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 {
 	(void)state;
@@ -195,8 +195,9 @@ static void a_wall_without_gap_is_touched_every_two_half_swings(void **state)
 	}
 }
 
-/* The laws.  An undamped oscillator of period 1 at rest is given v0 by a triangle of ground acceleration two samples
- * wide; the linear response after it is that of one pulse at its middle, times sinc^2(w step / 2). */
+/* The laws.  An undamped oscillator of period 1 at rest gets the velocity v0 from a triangle of ground acceleration
+ * two samples wide; its linear response afterwards is that to an impulse at the middle of the triangle, times
+ * sinc^2(w step / 2). */
 
 enum { PULSE_STEPS_PER_SECOND = 1000 };
 
@@ -215,7 +216,7 @@ static struct push pushed(struct specimen *specimen, const char *law, double dem
 	specimen_law(specimen, law, 0.01);
 	int n = (int)lround(duration * PULSE_STEPS_PER_SECOND) + 1;
 	double step = duration / (n - 1), w = 2 * pi, x = w * step / 2, mu = demand - 1;
-	// v0 that reaches demand times the yield displacement
+	// the v0 that leads to a displacement of demand times the yield displacement
 	struct push push = {.start = step, .energy = 1e-4 * (1 + 2 * mu + 0.05 * mu * mu)};
 	push.v0 = w * sqrt(push.energy);
 	double *a = specimen_record(specimen, step, n);
@@ -248,7 +249,7 @@ static void a_nonlinear_elastic_oscillator_swings_in_its_lengthened_period(void 
 	static const double demands[] = {1.5, 2, 3, 5, 10};
 	static const double periods[] = {1.128116229, 1.270272291, 1.512377218, 1.874464551, 2.439072811};
 	for (int k = 0; k < 5; k++) {
-		// the run ends one period after the middle of the pulse, one step after time 0
+		// the run ends one period after the middle of the pulse, which is one step after time 0
 		double duration = periods[k];
 		int steps = (int)lround(duration * PULSE_STEPS_PER_SECOND);
 		struct specimen specimen;
@@ -262,7 +263,7 @@ static void a_nonlinear_elastic_oscillator_swings_in_its_lengthened_period(void 
 	}
 }
 
-/* Time from the push to the largest displacement: a piece of a sine, then a piece of a cosine about 1 - 1/r. */
+/* Time from the pulse to the largest displacement: a segment of a sine, then a segment of a cosine about 1 - 1/r. */
 static double time_to_reversal(double demand, double r)
 {
 	double mu = demand - 1, centre = 1 - 1 / r;
@@ -277,7 +278,8 @@ static void an_elastoplastic_oscillator_turns_back_with_its_first_stiffness(void
 	struct push push = pushed(&specimen, "elastoplastic", 2, 0.65);
 	struct pound_response r = specimen_engine(&specimen);
 	specimen_free(&specimen);
-	// from u = 2 yields under the force 1.05 k yield about its own rest point until 2 yields further back
+	// from u = 2 yield displacements, released by the force 1.05 k yield, with the first stiffness until 2 yield
+	// displacements back
 	double w = 2 * pi, angle = w * (0.65 - push.start - time_to_reversal(2, 0.05));
 	double force = 0.01 * 1.05, back = force * (1 - cos(angle));
 	assert_true(angle > pi / 2 && back < 0.02);
@@ -285,8 +287,8 @@ static void an_elastoplastic_oscillator_turns_back_with_its_first_stiffness(void
 	check_near(r.end_v1, -w * force * sin(angle), rounding * w);
 }
 
-/* Every reversal of a decaying oscillation loses a half loop; in the end it swings elastically about a place that
- * the loops have shifted.  The energy the loop to demand 2 dissipates is 2 (1 - r) (mu - 1) per yielding stroke. */
+/* Every velocity reversal of a decaying oscillation loses half a loop; in the end it oscillates elastically about a
+ * position that the loops have shifted.  The loop to demand 2 dissipates 2 (1 - r) (mu - 1) per yielding stroke. */
 static void a_yielding_stroke_loses_the_area_of_half_a_loop(void **state)
 {
 	(void)state;
@@ -294,17 +296,17 @@ static void a_yielding_stroke_loses_the_area_of_half_a_loop(void **state)
 	struct push push = pushed(&specimen, "elastoplastic", 2, 0.65);
 	struct pound_response r = specimen_engine(&specimen);
 	specimen_free(&specimen);
-	// on the way back, still elastic: energy of the two springs k2 and k - k2 of the parallel model, over k/2
+	// during unloading, still elastic: energy of the springs k2 and k - k2 of the parallel model, over k/2
 	double u = r.end_u1, v = r.end_v1 / (2 * pi), slider = 0.01;
 	double energy = v * v + 0.05 * u * u + 0.95 * (u - slider) * (u - slider);
 	assert_true(u - slider > -0.01);
 	check_near((push.energy - energy) / 1e-4 / 2, 0.95 * (2 - 1), 1e-10);
 }
 
-// an origin-oriented oscillator pushed to twice its yield displacement, some time after the middle of the push
+// an origin-oriented oscillator whose pulse leads to twice its yield displacement, some time after the middle of the pulse
 static struct pound_response pushed_to_two(double after)
 {
-	// the pulse is one step after time 0
+	// the middle of the pulse is one step after time 0
 	int steps = (int)lround(after * PULSE_STEPS_PER_SECOND);
 	struct specimen specimen;
 	pushed(&specimen, "origin_oriented", 2, after * (steps + 1) / steps);
@@ -316,23 +318,23 @@ static struct pound_response pushed_to_two(double after)
 static void an_origin_oriented_oscillator_loses_energy_on_the_first_push_only(void **state)
 {
 	(void)state;
-	// to the largest displacement, then straight to the origin: a quarter of the period of the secant stiffness
+	// to the largest displacement, then along the secant to the origin: a quarter of the period of the secant stiffness
 	double w = 2 * pi, secant = 1.05 / 2, quarter = 0.25 / sqrt(secant);
 	double at_origin = time_to_reversal(2, 0.05) + quarter;
 	struct pound_response r = pushed_to_two(at_origin);
 	check_near(r.end_u1, 0, rounding);
 	check_near(r.end_v1, -w * 0.02 * sqrt(secant), rounding * w);
-	// of 1/2 + 1 + r/2, in k times the yield displacement squared
+	// of 1/2 + 1 + r/2, in units of k times the squared yield displacement
 	check_near(1.525 - pow(r.end_v1 / w / 0.01, 2) / 2, 0.475, 1e-10);
 
-	// the other side is as new: what is left, 2.1, reaches the demand there at which 1 + 2 mu + r mu^2 = 2.1
+	// the other side is undamaged: the remaining energy, 2.1, leads to the demand at which 1 + 2 mu + r mu^2 = 2.1
 	double mu = (sqrt(1 + 0.05 * 1.1) - 1) / 0.05, demand = 1 + mu,
 	       at_other_side = at_origin + time_to_reversal(demand, 0.05);
 	r = pushed_to_two(at_other_side);
 	check_near(r.end_u1, -0.01 * demand, rounding);
 	check_near(r.end_v1, 0, 1e-11);
 
-	// from there it swings to and fro on the two secants: a period later it is where it was, without loss
+	// from there it oscillates along the two secants: a period later it is back, without energy loss
 	double quarter_other = 0.25 / sqrt((1 + 0.05 * mu) / demand), other = 0.01 * demand;
 	double secant_other = (1 + 0.05 * mu) / demand, far = other * sqrt(secant_other / secant);
 	r = pushed_to_two(at_other_side + 2 * quarter_other + 2 * quarter);
@@ -364,7 +366,7 @@ static void equal_oscillators_never_press_on_each_other(void **state)
 	specimen_free(&specimen);
 }
 
-/* Twins are known without a run; what a small detuning does is in proportion to it. */
+/* Identical bodies never press on each other; for nearly identical ones the impulse is proportional to the detuning. */
 static void nearly_equal_oscillators_nearly_never_press_on_each_other(void **state)
 {
 	(void)state;
@@ -411,7 +413,7 @@ static void a_gap_that_is_never_reached_leaves_both_free(void **state)
 	}
 }
 
-/* The largest penetration without contact is found by trial: just below it one light touch, just above none. */
+/* The largest gap that is reached is found by bisection: just below it there is one light contact, just above it none. */
 static void a_gap_is_touched_exactly_when_the_free_responses_close_it(void **state)
 {
 	(void)state;
@@ -430,13 +432,14 @@ static void a_gap_is_touched_exactly_when_the_free_responses_close_it(void **sta
 	check_near(light.contact_count, 1, 0);
 	assert_true(light.impulse_max > 0);
 	check_near(light.displacement_max_1, light.displacement_max_free_1, 1e-4 * light.displacement_max_1);
-	// p'' from a parabola through the touch: 1e-9 gap deep, half as wide as 2 sqrt(2 depth / p''), p'' < 10 m/s2
+	// p'' from a parabola through the contact: 1e-9 gap deep; at least half of 2 sqrt(2 depth / p''), p'' < 10 m/s2
 	assert_true(light.contact_time > 2 * sqrt(2e-9 * touched / 10) * 0.5);
 	specimen_free(&specimen);
 }
 
-/* At rest with zero gap the softer body goes farther against the ground, by the damping with the third power of time,
- * by the stiffness with the fourth; one power more when the ground starts from zero. */
+/* From rest with zero gap the softer body moves farther against the ground: by a difference of damping with the third
+ * power of time, by a difference of stiffness with the fourth; one power more if the ground acceleration starts from
+ * zero. */
 static void bodies_that_touch_at_rest_press_on_each_other_from_the_first_moment(void **state)
 {
 	(void)state;

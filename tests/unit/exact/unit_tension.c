@@ -1,11 +1,11 @@
-/* unit_tension.c - contact without tension as schema/study.md has it, against closed forms: when the force ends, and what brings
- * it back.
+/* unit_tension.c - contact without tension as defined in schema/study.md, against closed forms: when the force ends,
+ * and when it returns.
  *
- * One body without spring and dashpot of its own is driven onto a wall by a constant acceleration a, so that
+ * A constant acceleration a presses one body without spring and dashpot on a wall:
  *
- *   in contact   p'' = a - W^2 p - 2 zeta W p'        elsewhere   p'' = a
+ *   in contact   p'' = a - W^2 p - 2 zeta W p'        otherwise   p'' = a
  *
- * and F/m = W^2 p + 2 zeta W p' falls to 0 while p > 0 yet. */
+ * F/m = W^2 p + 2 zeta W p' falls to 0 while p > 0. */
 #include <math.h>
 
 #include "engine/scene/contact.h"
@@ -15,7 +15,7 @@
 
 static const double PI = 3.14159265358979323846;
 static const double W_CONTACT = 30, PUSH = 1.5, ZETA = 0.3,
-                    AWAY = 0.02; /* [rad/s], [m/s2], 1, [s] before they meet */
+                    AWAY = 0.02; /* [rad/s], [m/s2], 1, time before contact [s] */
 
 enum { SAMPLES = 21 };
 static double ground[SAMPLES];
@@ -24,7 +24,7 @@ struct motion {
 	double p, q;
 };
 
-/* Contact for a time t. */
+/* State after a time t of contact. */
 static struct motion touching(struct motion from, double t)
 {
 	const double w = W_CONTACT, wd = w * sqrt(1 - ZETA * ZETA), rest = PUSH / (w * w);
@@ -44,7 +44,7 @@ static double force(struct motion m)
 	return W_CONTACT * W_CONTACT * m.p + 2 * ZETA * W_CONTACT * m.q;
 }
 
-/* When the force of a contact that begins with speed v first falls to 0; NAN: never. */
+/* Time at which the force of a contact that begins with speed v first falls to 0; NAN: never. */
 static double release(double v)
 {
 	const struct motion start = {0, v};
@@ -61,7 +61,7 @@ static double release(double v)
 	return NAN;
 }
 
-/* The body as it meets the wall with speed v, followed until T. */
+/* A body that meets the wall with speed v, until a given time. */
 static struct pound_task task_of(double v, double until)
 {
 	for (int k = 0; k < SAMPLES; k++)
@@ -76,7 +76,7 @@ static struct pound_task task_of(double v, double until)
 	                           .contact_damping = 2 * ZETA * W_CONTACT};
 }
 
-/* The exact and the adaptive solver have the motion, the contacts and their time. */
+/* Checks the motion, the contacts and their time by the exact and the adaptive solver. */
 static void check_solvers(const struct pound_task *task, struct motion end, int contacts, double time)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
@@ -116,7 +116,7 @@ static void force_comes_back_when_it_would_push_or_when_parted_bodies_meet_again
 {
 	(void)state;
 	int stays = 0, returns = 0, clears = 0;
-	// speeds in units of a/W: of release, below 2 zeta the force would not fall, and above 4 zeta the overlap ends first
+	// speeds in units of a/W: below 2 zeta the force would not fall at release, above 4 zeta the overlap ends first
 	for (double speed = 0.5; speed < 6; speed += 0.0625) {
 		const double w = W_CONTACT, v = speed * PUSH / w, ends = release(v);
 		if (isnan(ends)) {
@@ -128,13 +128,13 @@ static void force_comes_back_when_it_would_push_or_when_parted_bodies_meet_again
 		}
 		const struct motion parted = touching((struct motion){0, v}, ends);
 		assert_true(parted.p > 0 && parted.q < 0);
-		// parted, W^2 p + 2 zeta W p' = (W^2 q + 2 zeta W a) t + W^2 a t^2/2
+		// separated, W^2 p + 2 zeta W p' = (W^2 q + 2 zeta W a) t + W^2 a t^2/2
 		double away = -2 * (parted.q / PUSH + 2 * ZETA / w);
 		struct motion again = free_for(parted, away);
 		if (again.p > 0)
 			returns++;
 		else {
-			// the overlap falls to 0 with -(q^2 - 2 a p)^1/2, and rises through it again with as much
+			// the overlap falls to 0 at the rate -(q^2 - 2 a p)^1/2, and rises through 0 at the opposite rate
 			const double back = sqrt(parted.q * parted.q - 2 * PUSH * parted.p);
 			away = (back - parted.q) / PUSH;
 			again = (struct motion){0, back};

@@ -1,4 +1,4 @@
-/* unit_example.c - the built-in study documents: complete, valid, and with the engine's consent. */
+/* unit_example.c - the built-in study documents: complete, valid, and accepted by the engine. */
 #include <string.h>
 
 #include "schema/examples/examples.h"
@@ -54,7 +54,7 @@ static void the_paper_s_study_asks_for_what_the_paper_ran(void **state)
 	study_free(study);
 }
 
-/* or, of the lossless and stiffest contact alone, ends with the status of a motion that chatters: extremes.md */
+/* the lossless stiffest contact may instead end with the status of chatter: extremes.md */
 static void every_extreme_of_the_example_has_a_result_that_balances(void **state)
 {
 	(void)state;
@@ -72,7 +72,7 @@ static void every_extreme_of_the_example_has_a_result_that_balances(void **state
 		}
 		assert_int_equal(cell->runs_failed, 0);
 		check_near(cell->signals[0].energy_residual, 0, 1e-10);
-		// a metre is never gone
+		// a gap of 1 m is never closed
 		const bool meet = scene.contact.gap < 1;
 		assert_int_equal(cell->signals[0].contact_count > 0, meet);
 		for (int o = 0; o < study->n_outputs; o++) {

@@ -1,4 +1,4 @@
-/* unit_external_model.c - a model that is run elsewhere: its design out, its outputs in, and the indices they give. */
+/* unit_external_model.c - external models: the design as CSV, their outputs, and the indices from these. */
 #include <math.h>
 #include <string.h>
 
@@ -58,10 +58,10 @@ static void a_study_without_a_scene_is_inputs_and_a_design(void **state)
 	assert_true(study->elsewhere && study->kind == POUND_KIND_SENSITIVITY && study->n_inputs == 2);
 	assert_int_equal(study->design.rows, 6);
 	study_free(study);
-	// to be run here it needs its scene
+	// a study to be run here needs a scene
 	struct problems problems;
 	study_documents_refused(two_inputs, &problems);
-	// a study with a scene has a design too
+	// a study with a scene has a design, too
 	study = results_design(study_documents_sensitivity);
 	assert_false(study->elsewhere);
 	study_free(study);
@@ -111,7 +111,7 @@ static double index_of(const struct reading *result, int output, int input, cons
 	return reading_number(result, "/cells/0/outputs/%d/inputs/%d/%s", output, input, name);
 }
 
-/* The golden rows as CSV with every number formed by the format, which takes the output and its variance. */
+/* The golden rows as CSV, each line by the format, which gets the output and its variance. */
 static char *golden_csv(const char *header, const char *format, double variance)
 {
 	char *csv = NULL;
@@ -143,7 +143,7 @@ static void outputs_computed_elsewhere_give_the_golden_indices(void **state)
 	free(csv);
 }
 
-/* Corrected indices by their definition, of independent noise of variance v (1 + p) in sample p of every row:
+/* Corrected indices by their definition, for independent noise of variance v (1 + p) in sample p of every row:
  * S = (P_BC - P_AB) / ((P_AA + P_BB) / 2), T = (P_AA + P_CC - 2 P_AC) / (2 w), about the mean of all samples. */
 static void corrected(double v, double value[4])
 {
@@ -184,7 +184,7 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	assert_true(reading_number(result, "/cells/0/outputs/0/noise_share") > 0.0);
 	assert_true(isnan(reading_number(result, "/cells/0/outputs/0/excitation/ST_one_signal")));
 	reading_close(result);
-	// a row whose samples share their noise needs covariances, which are not there
+	// rows whose samples share their noise would need covariances, which are not given
 	char *document = study_documents_with(two_inputs, "\"rows\": 6", "\"rows\": 6, \"signals\": \"common\"");
 	result = results_of_lines(document, csv);
 	check_near(index_of(result, 0, 0, "S1_raw"), 0.572576783750673, 1e-12);
@@ -196,8 +196,8 @@ static void a_variance_column_takes_independent_noise_out(void **state)
 	free(csv);
 }
 
-/* Outputs p + q + z of a study's design as CSV, z twice as scattered as an input: one for the samples of a row or one for
- * each; with its variance in a column of its own, or without. */
+/* Outputs p + q + z of a study's design as CSV; z has twice the variance of an input, and is drawn once per row or
+ * once per sample; its variance is in a separate column or missing. */
 static char *noisy_csv(const char *document, bool shared, bool variance)
 {
 	struct pound_study *study = results_design(document);
@@ -223,8 +223,8 @@ static char *noisy_csv(const char *document, bool shared, bool variance)
 	return csv;
 }
 
-/* p, q and z have shares 1/4, 1/4 and 1/2 of the variance of y, and p and q halves of that of the mean response; with noise
- * of its own in every sample all but S1 of the other input is in ST. */
+/* p, q and z have 1/4, 1/4 and 1/2 of the variance of y; p and q have half of the variance of the mean response each;
+ * with independent noise in every sample ST contains all but S1 of the other input. */
 static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 {
 	(void)state;
@@ -258,7 +258,7 @@ static void indices_of_a_noisy_model_are_exact_or_null(void **state)
 	}
 }
 
-/* The samples of a row share their signals unless a study says otherwise; in a scene without random ones that is nothing. */
+/* The samples of a row share their signals by default; in a scene without random signals there is nothing to share. */
 static void a_scene_without_random_signals_has_no_noise_to_share(void **state)
 {
 	(void)state;
@@ -307,7 +307,7 @@ static void an_inert_input_has_no_total_once_replicates_give_the_noise(void **st
 	    results_of_lines("{\"inputs\": [{\"name\": \"a\", " UNIFORM ", {\"name\": \"b\", " UNIFORM
 	                     ", {\"name\": \"c\", " UNIFORM ", {\"name\": \"d\", " UNIFORM "]}",
 	                     csv);
-	// nu = sigma^2 / (R V) = 0.2: raw T -> nu / (1 + nu); corrected RMSE 0.0097 of an inert input of this function
+	// nu = sigma^2 / (R V) = 0.2: raw T of an input without effect is nu / (1 + nu); corrected: RMSE 0.0097 for this function
 	check_near(index_of(result, 0, 3, "ST_raw"), 0.2 / 1.2, 4 * 0.0097);
 	check_near(index_of(result, 0, 3, "ST_pick_freeze"), 0.0, 4 * 0.0097);
 	for (int j = 0; j < D; j++) {
@@ -335,7 +335,7 @@ static void a_run_without_a_number_takes_its_row_out_of_every_output(void **stat
 		struct reading *result = results_of_lines(two_inputs, csv);
 		check_near(reading_number(result, "/cells/0/runs_failed"), 1.0, 0.0);
 		check_near(reading_number(result, "/cells/0/rows_dropped"), 1.0, 0.0);
-		// as from five rows; centred Saltelli by hand
+		// as from five rows; centered Saltelli estimate by hand
 		double mu = 0.0, square = 0.0, above = 0.0;
 		for (int i = 0; i < 6; i++)
 			mu += i == 2 ? 0.0 : (golden[i][0] + golden[i][1]) / 10;
@@ -361,7 +361,7 @@ static void spelling_and_further_columns_do_not_change_the_result(void **state)
 	struct pound_study *study = results_design(two_inputs);
 	struct pound_run *run = pound_run_create(study, 1);
 	char *plain = golden_csv("y\n", "%.17g\n", 0.0), *rows = model_rows(study, run, 0, 6, &n_rows);
-	// the design's own columns, quotes, spaces, the line ends and the mark of a spreadsheet
+	// the design's own columns, quotes, spaces, line ends and byte order mark of a spreadsheet
 	char *csv = NULL;
 	FILE *out = open_memstream(&csv, &n_other);
 	fputs("\xEF\xBB\xBFrow, \"y\" ,p,\"q, r\",sample\r\n", out);
@@ -391,7 +391,7 @@ static void a_quote_that_begins_the_text_is_the_first_of_its_cell(void **state)
 	struct problems problems;
 	size_t n, n_quoted;
 	char *json = model_indices(study, plain, strlen(plain), &problems, &n);
-	// what stands in front of the text is no part of it: here another quote
+	// the byte before the text, here another quote, is not read
 	char *other = model_indices(study, quoted + 1, strlen(quoted + 1), &problems, &n_quoted);
 	assert_non_null(json);
 	assert_non_null(other);
@@ -453,7 +453,7 @@ static void the_samples_of_a_study_give_its_raw_indices_again(void **state)
 			check_near(index_of(result, o, j, "ST_raw"), cell->indices[o].index[POUND_ST_RAW][j].value,
 			           1e-12);
 		}
-		// its samples share their signals, of which the variances are too uncertain
+		// the samples share their signals, whose variances are too uncertain
 		assert_non_null(strstr(reading_text(result, "/cells/0/outputs/%d/note", o), "share their noise"));
 	}
 	reading_close(result);
@@ -465,14 +465,14 @@ static void the_samples_of_a_study_give_its_raw_indices_again(void **state)
 static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 {
 	(void)state;
-	// a place has room for 159 bytes
+	// a pointer has room for 159 bytes
 	char long_cell[520] = "", long_place[160] = "line 1, ";
 	memset(long_cell, '0', 512);
 	strcat(long_cell, "1\n");
 	memset(long_place + 8, '0', 148);
 	strcpy(long_place + 156, "...");
 	const struct {
-		const char *header, *line, *last; /* of the lines but the last, and the last */
+		const char *header, *line, *last; /* all lines but the last, and the last */
 		const char *pointer, *detail;
 	} refused[] = {
 	    {"y\n", "1\n", "", "", "has 23 lines after the header, expected 24: 4 samples for each of 6 rows"},
@@ -486,7 +486,7 @@ static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 	     "must be a decimal number, or empty or nan for a failed run, got \"-1e999\""},
 	    {"y\n", "1\n", "0x10\n", "line 25, y",
 	     "must be a decimal number, or empty or nan for a failed run, got \"0x10\""},
-	    // many lines with one fault are one message
+	    // many lines with the same fault give one message
 	    {"y\n", "0x1\n", "1\n", "lines 2, 3, 4 and 20 more, y",
 	     "must be a decimal number, or empty or nan for a failed run, got \"0x1\" (line 2)"},
 	    {"y,z\n", "1,2,3\n", "1,2\n", "lines 2, 3, 4 and 20 more", "has 3 cells, the header has 2 (line 2)"},
@@ -508,7 +508,7 @@ static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 	     "e\n",
 	     "1\n", "1\n", "line 1", "is not UTF-8"},
 	    {"y\n", "1\n", "\xb5\n", "line 25", "is not UTF-8"},
-	    // its first 511 digits are another number, and a cut name another name
+	    // its first 511 digits are another number; a truncated name is another name
 	    {"y\n", "1\n", long_cell, "line 25, y",
 	     "must be a decimal number, or empty or nan for a failed run, got "
 	     "\"000000000000000000000000000000000000000000000000000000000000\""},
@@ -564,7 +564,7 @@ static void every_spelling_of_a_decimal_number_is_one(void **state)
 	study_free(study);
 }
 
-/* What `pound design` prints of a design that grows is what `pound indices` reads: the rows of its first look. */
+/* The rows that `pound design` prints of a growing design are the rows that `pound indices` reads: those of its first look. */
 static void a_design_that_grows_is_that_of_its_first_look(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* unit_given_table.c - tables of samples as CSV: what is refused, and whether the numbers in the result are the engine's. */
+/* unit_given_table.c - tables of samples as CSV: what is refused; the result has the engine's numbers. */
 #include <math.h>
 #include <string.h>
 
@@ -9,8 +9,8 @@
 
 enum { N = 100 };
 
-/* Points of a lattice of two inputs and their sum: a column for each letter, a, b or y, and 1 for a constant; of samples
- * first to end-1 the last column is missing. */
+/* Points of a lattice of two inputs and their sum: a column for each letter, a, b or y, and 1 for a constant; samples
+ * first to end-1 lack the last column. */
 static char *text_of(const char *header, const char *columns, int first, int end)
 {
 	char *text = NULL;
@@ -64,7 +64,7 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 	pound_given_check(&given, scratch, &checks);
 	pound_given_estimate(&given, &checks, sums, scratch, &indices);
 	for (int k = 0; k < 2; k++) {
-		// outputs in a table with the inputs again are the same outputs
+		// a table of outputs may contain the inputs again
 		read_all(&x, &y, one, k ? both : two);
 		char *json = given_indices(&x, &y, &problems, &n);
 		assert_non_null(json);
@@ -197,7 +197,7 @@ static void blank_lines_at_the_end_are_no_samples(void **state)
 	check_near(x.cells[2], 3.0, 0.0);
 	assert_true(isnan(x.cells[3]));
 	given_table_free(&x);
-	// of one column an empty cell is a missing number
+	// in a single column an empty cell is a missing number
 	given_table_read(&x, GIVEN_INPUTS, one, sizeof one - 1, &problems);
 	assert_int_equal(x.n_rows, 2);
 	given_table_free(&x);

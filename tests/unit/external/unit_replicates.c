@@ -33,7 +33,7 @@ static char *noisy_csv(const struct pound_study *study, bool common, double nois
 			double x[2];
 			pound_run_sample_inputs(run, row, sample, x);
 			for (int r = 0; r < 4; r++) {
-				// uniform of variance noise^2
+				// uniform with variance noise^2
 				state = state * 6364136223846793005u + 1442695040888963407u;
 				if (!common || sample == 0)
 					factor[r] = 1 + noise * sqrt(12.0) * ((double)(state >> 11) * 0x1p-53 - 0.5);
@@ -85,7 +85,7 @@ static void replicates_without_noise_are_the_output_itself(void **state)
 	(void)state;
 	struct pound_study *study = results_design(INDEPENDENT);
 	char *copies = noisy_csv(study, false, 0), *csv = strdup(copies), *to = csv;
-	// the first column alone
+	// the first column only
 	for (const char *from = copies; *from; from = strchr(from, '\n') + 1) {
 		const size_t n = strcspn(from, ",");
 		memcpy(to, from, n);

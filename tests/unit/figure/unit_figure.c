@@ -1,5 +1,5 @@
-/* unit_figure.c - pictures of results: well formed, within their view box, the same bytes, harmless names; ticks of any
- * range. */
+/* unit_figure.c - figures of results: well-formed SVG within the view box, the same bytes each time, safe against
+ * hostile names; ticks of any range. */
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static void ticks_of_any_range_are_few_and_inside(void **state)
 					         at, last);
 				last = at;
 			}
-			// every value has a place between the ends
+			// every value has a position between the ends
 			for (int end = 0; end < 2; end++) {
 				double value = end ? ranges[i].high : ranges[i].low, at = axis_at(&axis, value);
 				if (ranges[i].low <= ranges[i].high && (!log || value > 0) && !(at >= -0.6 && at <= 500.6))
@@ -77,8 +77,8 @@ static void the_text_of_a_tick_has_the_digits_it_needs(void **state)
 
 /* ---- XML ---- */
 
-/* Fails unless the text is XML of elements, attributes, entities and text, without doubled attributes, scripts, links,
- * ids or characters that XML forbids; every coordinate of a path lies in the view box. */
+/* Fails unless the text is XML of elements, attributes, entities and text, without duplicate attributes, scripts,
+ * links, ids or characters that XML forbids; every coordinate of a path must be in the view box. */
 static void check_svg(const char *what, const char *svg, size_t length)
 {
 	char open[DEPTH_MOST][32];
@@ -156,7 +156,7 @@ static struct figure drawn(const char *name, const struct figure_source *source,
 	return figure;
 }
 
-/* Draws all figures of a result, wide and narrow; how many. */
+/* Draws all figures of a result, narrow and wide; returns their number. */
 static int draw_all(const char *what, const struct figure_source *source)
 {
 	static const char *const widths[] = {"320", "1120", "1400"};
@@ -178,7 +178,7 @@ static int draw_all(const char *what, const struct figure_source *source)
 
 /* ---- results ---- */
 
-/* The result of a study document, and the histories if it has them. */
+/* The result of a study document, and its histories if it has any. */
 static struct figure_source result_of(const char *document)
 {
 	struct figure_source source = {0};
@@ -200,7 +200,7 @@ static void source_free(struct figure_source *source)
 	free((char *)source->samples);
 }
 
-/* A copy with every number that has a point or a power replaced. */
+/* A copy with every number that has a decimal point or an exponent replaced. */
 static char *with_numbers(const char *json, const char *number, size_t *length)
 {
 	size_t n = strlen(json), at = 0;
@@ -230,7 +230,7 @@ static bool is_quick(const char *name)
 
 static void every_figure_of_every_example_is_well_formed_and_within_its_view_box(void **state)
 {
-	// equal, missing, tiny and huge numbers, too
+	// also equal, missing, tiny and huge numbers
 	static const char *const numbers[] = {"null", "0", "1e-300", "-1e-300", "1.7e308", "0.25"};
 	int n = 0, n_numbers = 0;
 	(void)state;
@@ -261,7 +261,7 @@ static void a_figure_has_a_mark_for_each_index(void **state)
 	(void)state;
 	for (const char *c = figure.svg; (c = strstr(c, "<title>")); c++)
 		marks++;
-	// two outputs, four inputs, S1 and ST; and the title of the whole
+	// two outputs, four inputs, S1 and ST; and the title of the figure
 	assert_int_equal(marks, 2 * 4 * 2 + 1);
 	free(figure.svg);
 	source_free(&source);
@@ -270,7 +270,7 @@ static void a_figure_has_a_mark_for_each_index(void **state)
 static void a_name_stays_text(void **state)
 {
 	static const char hostile[] = "</text><script>alert(1)</script>&\\\"'\\u0007\\u202e\\ufffe";
-	// the door refuses some of these; a result may come from elsewhere
+	// the reader of studies refuses some of these; a result may come from elsewhere
 	struct figure_source asked = result_of(example_text("sensitivity_small")), source = {0};
 	source.json = study_documents_with(asked.json, "f_2", hostile);
 	source.length = strlen(source.json);
@@ -295,7 +295,7 @@ static void a_long_name_keeps_its_beginning_and_its_end(void **state)
 	          "the stiffness of the contact of building 11");
 	draw_text(&d, &(struct label){.x = 10, .y = 40, .fit = 60}, "ααααααααααααααααααααααααω");
 	char *svg = draw_take(&d, "title", "sentence", &n);
-	// its title is the whole
+	// its title is the whole name
 	const char *text = strstr(svg, "<title>the stiffness of the contact of building 11</title>the s");
 	assert_non_null(text);
 	assert_non_null(strstr(text, "…"));
@@ -336,7 +336,7 @@ static void a_short_logarithmic_axis_has_two_ticks_at_least(void **state)
 
 static void what_has_no_value_says_so(void **state)
 {
-	// results of which nothing but counts is left
+	// results in which only the counts have values
 	static const char *const names[] = {"sensitivity_small", "floor_spectrum", "response", "street", "until"};
 	(void)state;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -572,7 +572,7 @@ static void every_figure_and_argument_stands_in_the_docs(void **state)
 	free(page);
 }
 
-/* What is asked of a study that lacks it, in the words of the study. */
+/* If a result lacks what a figure needs, the message uses the terms of study documents. */
 static void a_figure_that_a_result_has_not_says_what_it_needs(void **state)
 {
 	static const struct {

@@ -1,4 +1,4 @@
-/* unit_report.c - a result as one HTML page: everything is in it, nothing is loaded, names stay text. */
+/* unit_report.c - a result as one HTML page: the page is complete, loads nothing, and names remain text. */
 #include <string.h>
 
 #include "schema/examples/examples.h"
@@ -11,7 +11,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
-/* A result of a study document, and its histories if it has them. */
+/* A result of a study document, and its histories if it has any. */
 static struct figure_source result_of(const char *document)
 {
 	struct figure_source source = {0};
@@ -41,7 +41,7 @@ static int count(const char *text, const char *word)
 	return n;
 }
 
-/* Fails unless what is opened is closed, and nothing is loaded from anywhere. */
+/* Fails unless every element is closed, and nothing is loaded from elsewhere. */
 static void check_page(const char *page)
 {
 	static const char *const pairs[][2] = {
@@ -62,7 +62,7 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 {
 	static const char *const names[] = {"sensitivity_small", "until",          "paper_linear",
 	                                    "floor_spectrum",    "response_sweep", "convergence"};
-	int narrower = 0; /* results whose interval of all rows is not the narrowest */
+	int narrower = 0; /* results in which the interval from all rows is not the narrowest */
 	(void)state;
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
 		size_t n;
@@ -90,7 +90,7 @@ static void a_report_has_every_figure_table_note_and_what_was_left_out(void **st
 		const char *item = strstr(page, widest.narrower);
 		assert_true(!*widest.narrower || (item && strncmp(item - 4, "<li>", 4) == 0));
 		narrower += *widest.narrower != 0;
-		// every table scrolls in a box of its own
+		// every table scrolls in its own box
 		assert_int_equal(count(page, "<div class=\"wide\""), count(page, "<table>"));
 		assert_non_null(strstr(page, "&quot;kind&quot;: &quot;"));
 		reading_close(result);
@@ -118,7 +118,7 @@ static void a_report_of_a_swept_study_has_the_indices_of_each_cell(void **state)
 	free(document);
 }
 
-/* Of a row of buildings each contact has its own, and runs that were not made are not counted. */
+/* For a row of buildings each contact has its own gap, and runs that were not computed are not counted. */
 static void a_report_of_a_row_has_the_gap_of_each_contact(void **state)
 {
 	size_t n;

@@ -1,8 +1,8 @@
 /* unit_chain_pieces.c - floors of chains, by two ways each.
  *
- * 1. A pair by the march of pairs and as a chain of two one-story buildings.
- * 2. An oscillator on a floor is one more story of next to no mass, whose largest drift times w^2 is the ordinate: for every
- *    contact model. */
+ * 1. A pair by the solver of pairs and as a chain of two one-story buildings.
+ * 2. An oscillator on a floor is an additional story of negligible mass, whose largest drift times w^2 is the ordinate:
+ *    for every contact model. */
 #include <math.h>
 #include <string.h>
 
@@ -41,7 +41,7 @@ static struct pound_floor_answer spectra_of(struct pound_floor_ask ask, double d
 
 /* ---- a pair ---- */
 
-/* Rows at samples, the last of each. */
+/* Rows at samples, the last row of each. */
 struct rows {
 	double step;
 	int samples, rows;
@@ -80,7 +80,7 @@ static void instants_near(const struct pound_floor_instant *a, const struct poun
 	check_near(a->ground, b->ground, 0);
 }
 
-/* A pair of any of the laws with a gap, beside a wall or not. */
+/* A pair of any of the laws with a gap, possibly with a wall. */
 static void pair_make(struct specimen *specimen, int number)
 {
 	specimen_init(specimen);
@@ -91,7 +91,7 @@ static void pair_make(struct specimen *specimen, int number)
 	specimen->study.scene.oscillators[1].rigid_wall = number >= SPECIMEN_LAWS;
 }
 
-/* The same contact, as a form that the march of pairs does not have. */
+/* The same contact, in a form that the solver of pairs does not support. */
 static void as_chain(struct pound_task *task)
 {
 	task->law = pound_task_law(task);
@@ -135,7 +135,7 @@ static void a_pair_is_a_chain_of_one_story_buildings(void **state)
 
 /* ---- an oscillator is a story ---- */
 
-/* Three stories beside three that touch at floors 1 and 3; f > 0: an oscillator of that frequency is on the third floor. */
+/* Three stories beside three, with contacts at floors 1 and 3; f > 0: an oscillator of that frequency is on the third floor. */
 static void row_make(struct row *row, const char *model, int law, double f)
 {
 	const double light = 1e-13;
@@ -166,7 +166,7 @@ static void row_make(struct row *row, const char *model, int law, double f)
 	left->stiffness[3] = left->mass[3] * pow(2 * PI * f, 2);
 }
 
-/* Its own damping and law. */
+/* The oscillator has its own damping and law. */
 static void oscillator_set(struct row *row, double f, double damping)
 {
 	struct pound_chain_floor *floor = &row->floors[3];

@@ -1,4 +1,4 @@
-/* unit_floor.c - spectra and histories of whole scenes: closed forms, a plain integrator, limits and bits. */
+/* unit_floor.c - floor spectra and histories of whole scenes: closed forms, a plain integrator, invariants and bits. */
 #include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static void a_range_of_frequencies_is_a_geometric_one(void **state)
 	check_near(pound_spectrum_frequency(&listed, 1), 2, 0);
 }
 
-/* Shock spectrum of a half sine, undamped: td/T and max |w^2 u|/A, computed elsewhere. */
+/* Shock spectrum of a half sine, undamped: td/T and max |w^2 u|/A, computed by another program. */
 static const double shocks[][2] = {
     {.1, .396273548}, {.25, .942809042}, {.5, 1.570796327}, {.75, 1.763355757}, {.80994, 1.768457654},
     {1, 1.732050808}, {1.5, 1.5},        {2, 1.268075355},  {3, 1.169913495},   {5, 1.099801602},
@@ -39,7 +39,7 @@ static const double shocks[][2] = {
 
 enum { SHOCKS = sizeof shocks / sizeof shocks[0] };
 
-/* A floor of 5 kHz is the ground but for (f/5000)^2 = 1e-6 at 5 Hz, and 1e-8 at the pulse's own 0.5 Hz. */
+/* A floor of 5 kHz moves as the ground except for (f/5000)^2 = 1e-6 at 5 Hz, and 1e-8 at the pulse's own 0.5 Hz. */
 static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **state)
 {
 	(void)state;
@@ -52,10 +52,10 @@ static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **
 	specimen.study.scene.oscillators[0].frequency_hz = 5000;
 	specimen.study.scene.contact.present = false;
 	specimen_half_sine(&specimen, 1, 1, 6.2,
-	                   0.005); // the slowest has its peak half its 10 s after the pulse at the latest
+	                   0.005); // the slowest has its peak within half its period of 10 s after the pulse
 	const struct pound_task task = floor_task_task(&specimen, false);
 	floor_task_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
-	// the record is the half sine to (pi 0.005)^4/100 = 6e-10
+	// the record approximates the half sine to (pi 0.005)^4/100 = 6e-10
 	for (int k = 0; k < SHOCKS; k++)
 		check_near(psa[0][k], shocks[k][1], 2.5e-9 + 2 * pow(fmax(frequency[k], 0.5) / 5000, 2));
 	specimen_free(&specimen);
@@ -65,7 +65,7 @@ static void a_floor_that_is_stiff_gives_the_shock_spectrum_of_the_ground(void **
 
 enum { CHASED = 6 };
 
-/* Floor and oscillators of case A's kind together by classical Runge-Kutta steps, contact looked at in every stage. */
+/* Floor and oscillators as in case A together by classical Runge-Kutta steps; contact is checked in every stage. */
 static void plain_rates(const struct pound_task *task, double ground, const double *w, double xi,
                         const double *y, double *dy)
 {
@@ -122,15 +122,16 @@ static void a_plain_integrator_finds_the_same_spectrum(void **state)
 			w[k] = 2 * pi * frequency[k];
 		plain_spectra(&task, w, 0.05, 100, plain);
 		floor_task_spectra(&task, &spectrum, 2, 1.5, 0, (double **)into);
-		// steps of 5e-5 s: where the dashpot makes the force jump a contact of 12 ms begins up to one late, else the error
-		// is a jump of the force's slope, (contact frequency times step)^2/10 = 2e-5 of the force
+		// steps of 5e-5 s: if the dashpot makes the force jump, a contact of 12 ms begins up to one step late;
+		// otherwise only the slope of the force jumps, with an error of (contact frequency times step)^2/10 = 2e-5 of
+		// the force
 		for (int k = 0; k < CHASED; k++)
 			check_near(psa[0][k] / plain[k], 1, elastic ? 2e-5 : 3e-3);
 		specimen_free(&specimen);
 	}
 }
 
-/* ---- what must hold in any scene ---- */
+/* ---- invariants of any scene ---- */
 
 static void half_the_steps_give_the_same_spectra(void **state)
 {
@@ -149,7 +150,7 @@ static void half_the_steps_give_the_same_spectra(void **state)
 		task.time_step = 0.005;
 		floor_task_spectra(&task, &spectrum, 2, 0.4, 0, (double **)into_again);
 		for (int d = 0; d < 2; d++)
-			for (int k = 0; k < spectrum.n; k++) // 4 s of impacts
+			for (int k = 0; k < spectrum.n; k++) // after 4 s of impacts
 				check_near(again[d][k], psa[d][k], 1e-9 * fmax(psa[d][k], 1));
 		specimen_free(&specimen);
 	}
@@ -177,13 +178,13 @@ static void every_lane_count_gives_the_same_bits(void **state)
 	}
 }
 
-/* Floors that are followed at once, pairs of any laws with a chain and one that cannot be followed among them, have the bits and the
- * status that each has alone. */
+/* Floors followed together (pairs of any laws, a chain, and a pair that cannot be followed) have the same bits and
+ * status as each floor alone. */
 static void floors_at_once_are_those_alone(void **state)
 {
 	(void)state;
 	enum { FREQUENCIES = 21, CHAIN = 8, CHATTER = 11 };
-	// a stiff contact without losses that stays closed: unit_floor_pieces
+	// a stiff contact without energy loss that stays closed: unit_floor_pieces
 	static const double ground[] = {-0.01, -0.31, -0.61, -0.91};
 	const struct pound_task chatter = {
 	    .ground = ground,
@@ -251,7 +252,7 @@ static void drive_take(void *of)
 		}
 }
 
-/* High frequencies follow the floor: their pseudo-acceleration is its largest acceleration. */
+/* An oscillator of high frequency follows the floor: its pseudo-acceleration is the floor's largest acceleration. */
 static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 {
 	(void)state;
@@ -259,7 +260,7 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	const struct pound_spectrum spectrum = {.n = 1, .frequencies_hz = frequency, .damping_ratio = 0.05};
 	struct specimen specimen;
 	specimen_init(&specimen);
-	specimen.study.scene.contact.restitution = 1; // no jump of the force
+	specimen.study.scene.contact.restitution = 1; // the force does not jump
 	specimen_half_sine(&specimen, 1, 0.5, 2, 0.01);
 	const struct pound_task task = floor_task_task(&specimen, true);
 	floor_task_spectra(&task, &spectrum, 1, 1.5, 0, (double **)into);
@@ -274,7 +275,7 @@ static void a_stiff_oscillator_shows_the_largest_acceleration(void **state)
 	pound_floor_start(&motion);
 	assert_true(pound_exact_lanes(0, &observed, &result, 1, scratch, NULL));
 	drive_take(&largest);
-	// what the kinks where contacts begin leave behind is (contact frequency / own) of it, 25 Hz to 20 kHz
+	// a jump of the slope at the start of a contact leaves a relative error of contact frequency / own, 25 Hz to 20 kHz
 	check_near(psa[0][0] / largest.value, 1, 2e-3);
 	specimen_free(&specimen);
 }
@@ -338,7 +339,7 @@ static void a_history_has_every_sample_and_both_sides_of_every_event(void **stat
 	assert_int_equal(rows.doubled, 14);
 	check_near(rows.time, 3, 1e-12);
 	check_near(rows.u_end, specimen_references[0].end_u1, 1e-8);
-	// the impulses of all contacts, by straight lines: theta^2/12 smaller (floor.c)
+	// the impulses of all contacts by linear interpolation: smaller by theta^2/12 (floor.c)
 	check_near(-rows.work,
 	           .236645435 + .080375034 + .078971148 + .057062727 + .029576627 + .028330364 + .024251585,
 	           1e-3 / 12 * 0.54);

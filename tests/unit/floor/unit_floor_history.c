@@ -1,6 +1,7 @@
-/* unit_floor_history.c - rows of a history: the spectrum that they give by straight lines, and the motion of both bodies.
+/* unit_floor_history.c - rows of a history: the spectrum by linear interpolation of the rows, and the motion of both
+ * bodies.
  *
- * The oracle is floor_task_lines(): the textbook's own, which has no code in common with the floor's oscillators. */
+ * The oracle is floor_task_lines(), a textbook method that shares no code with the floor's oscillators. */
 #include <math.h>
 #include <string.h>
 
@@ -86,8 +87,8 @@ static void straight_lines_between_rows_give_the_spectrum_within_half_a_percent(
 			}
 }
 
-/* Every row is a state of the equations of motion, and rows lead to each other: the integral of a velocity v is
- * (v + v')h/2 + (a - a')h^2/12 up to h^5 |a'''|/720, for contacts of frequency W and speed v: (W h)^5 v/(720 W). */
+/* Every row satisfies the equations of motion, and rows lead to each other: the integral of a velocity v is (v +
+ * v')h/2 + (a - a')h^2/12 up to h^5 |a'''|/720, for contacts of frequency W and speed v: (W h)^5 v/(720 W). */
 static void every_row_is_the_motion_of_both_bodies(void **state)
 {
 	(void)state;
@@ -124,7 +125,7 @@ static void every_row_is_the_motion_of_both_bodies(void **state)
 			}
 			check_near(r->gap, task.gap - (r->u[0] - r->u[1]), 1e-13 * (size[0] + size[1]));
 			if (r->push != 0) {
-				// in contact the force is that of the overlap, even where it is 1e-9 of the displacements
+				// in contact the force follows from the overlap, even if that is 1e-9 of the displacements
 				inside++;
 				check_near(-r->push, -task.contact_stiffness * r->gap - task.contact_damping * r->gap_rate,
 				           1e-9 * push);

@@ -1,4 +1,5 @@
-/* unit_floor_pieces.c - the pieces of a floor's motion: each leads to the next by Newton's law, and known answers. */
+/* unit_floor_pieces.c - the pieces of a floor's motion: each ends in the state where the next begins, by Newton's
+ * law; and known answers. */
 #include <float.h>
 #include <math.h>
 
@@ -7,23 +8,23 @@
 
 static struct pound_floor_stretch stretch;
 
-/* a task followed to its end, and what its pieces add up to */
+/* a task followed to its end, and totals over its pieces */
 struct followed {
 	const struct pound_task *task;
 	struct pound_task_result result;
-	enum pound_status status; /* of the pieces */
+	enum pound_status status; /* status of the pieces */
 	int pieces, maps, events, touching;
-	double time, gap;       /* total of the steps; largest break between two pieces [s] */
-	double impulse, pushed; /* largest of a contact, and of the current one [m/s] */
-	double largest;         /* acceleration [m/s2] */
+	double time, gap;       /* total of the steps; largest time between two pieces [s] */
+	double impulse, pushed; /* largest impulse of a contact, and impulse of the current one [m/s] */
+	double largest;         /* largest acceleration [m/s2] */
 	struct {
-		double u, v; /* by the piece before [m], [m/s] */
+		double u, v; /* end state of the preceding piece [m], [m/s] */
 	} next;
-	double u_error, v_error; /* of the next piece's start [m], [m/s] */
-	double u_top, v_top;     /* the largest displacement and speed */
+	double u_error, v_error; /* largest error of a piece's start [m], [m/s] */
+	double u_top, v_top;     /* largest displacement and speed */
 };
 
-/* The ground's acceleration at a time, inside the sample interval of another one. */
+/* The ground's acceleration at a time, from the sample interval that contains another time. */
 static double ground_at(const struct pound_task *task, double time, double within)
 {
 	int k = (int)fmin(within / task->time_step, task->n_samples - 2);
@@ -31,9 +32,9 @@ static double ground_at(const struct pound_task *task, double time, double withi
 	return a[0] + (a[1] - a[0]) * (time / task->time_step - k);
 }
 
-/* A piece begins where the one before has led, but for roundings and swings that are left out.
+/* A piece begins where the preceding one ends, except for rounding errors and neglected oscillations.
  *
- *   u'' = a - g, a the floor's absolute acceleration, a polynomial, and g the ground's, a straight line
+ *   u'' = a - g    a  the floor's absolute acceleration, a polynomial;  g  the ground's acceleration, linear in time
  */
 static void piece_follow(struct followed *f, double start, double u, double v)
 {
@@ -105,9 +106,9 @@ static void follow(struct followed *f, const struct pound_task *task)
 	f->status = motion.status;
 }
 
-/* Follows a task of which every piece is to lead to the next.
+/* Follows a task and checks that each of its pieces leads to the next.
  *
- * Given    tolerance  of displacement and velocity there, over the largest of either
+ * Given    tolerance  of displacement and velocity, relative to the largest of each
  */
 static struct followed check_followed(const struct pound_task *task, double tolerance)
 {
@@ -118,9 +119,9 @@ static struct followed check_followed(const struct pound_task *task, double tole
 	const double end = (task->n_samples - 1) * task->time_step;
 	check_near(f.time, end, f.pieces * DBL_EPSILON * end);
 	check_near(f.gap, 0, f.pieces * DBL_EPSILON * end);
-	// A pressed body stands still by accelerations that take each other away but for their roundings, and what its contact's
-	// own swing adds to its velocity is left out where it is 2^-48 of what those do in a radian of the bodies' motion.  Here the
-	// ground's is taken at times that have a rounding.
+	// A body at rest in sustained contact has accelerations that cancel except for rounding errors; the contact's own
+	// oscillation is neglected if its velocity is below 2^-48 of what these accelerations add in a radian of the
+	// bodies' motion.  Here the ground acceleration is evaluated at times with a rounding error.
 	double rate = 0;
 	for (int i = 0; i < POUND_OSCILLATORS; i++)
 		rate = fmax(rate, fmax(sqrt(task->bodies[i].backbone.stiffness), task->bodies[i].damping));
@@ -141,7 +142,7 @@ static void known_impacts_come_out_to_their_digits(void **state)
 		const struct pound_task task = floor_task_task(&specimen, true);
 		const struct followed f = check_followed(&task, 1e-13);
 		assert_int_equal(f.result.contacts, (int)reference->contacts);
-		// the record is the half sine to (pi 0.005)^4/100 = 6e-10 of it
+		// the record approximates the half sine to (pi 0.005)^4/100 = 6e-10
 		check_near(f.impulse, reference->impulse_max, 1e-8 * reference->impulse_max);
 		check_near(f.next.u, reference->end_u1, 1e-8);
 		specimen_free(&specimen);
@@ -167,7 +168,7 @@ static void every_piece_leads_to_the_next(void **state)
 	assert_true(touched > 100 && events > 200 * 10 && maps > 200 * 100);
 }
 
-/* Ten thousand radians of the contact go by in every sample in which the bodies stay pressed on each other. */
+/* Every sample of sustained contact takes ten thousand radians of the contact. */
 static void a_quasi_static_contact_is_followed_by_whole_samples(void **state)
 {
 	(void)state;
@@ -190,7 +191,7 @@ static void a_quasi_static_contact_is_followed_by_whole_samples(void **state)
 	}
 }
 
-/* Its own swing never dies away, and is left out where it is a rounding of the bodies' motion. */
+/* The contact's own oscillation never decays; it is neglected where it is a rounding error of the bodies' motion. */
 static void a_contact_without_losses_is_followed_however_stiff(void **state)
 {
 	(void)state;
@@ -211,15 +212,15 @@ static void a_contact_without_losses_is_followed_however_stiff(void **state)
 	}
 }
 
-/* Where its swing is large and no losses end it, it is followed: not beyond what takes hours. */
+/* A large oscillation without energy loss is followed, unless it needs so many pieces that it would take hours. */
 static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 {
 	(void)state;
-	// what presses is there at once, and the contact swings about it; it grows, and so the contact does not open
+	// the contact force starts at once, and the contact oscillates about it; the force grows, so the contact does not open
 	static const double ground[] = {-0.01, -0.31, -0.61, -0.91};
 	struct followed f;
 	for (int stiff = 0; stiff < 2; stiff++) {
-		// a thousand and a million swings in a sample, each of four pieces and more
+		// a thousand and a million cycles in a sample, each of four pieces or more
 		const double k = 40;
 		const struct pound_task task = {
 		    .ground = ground,
@@ -238,11 +239,11 @@ static void a_swing_that_takes_too_many_pieces_ends_as_chatter(void **state)
 	}
 }
 
-/* A quasi-static contact takes its bodies along. */
+/* In quasi-static contact a creeping body moves the other one. */
 static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 {
 	(void)state;
-	static const int vanishing[] = {2681, 2858}; // the squares of what is left of their velocities do
+	static const int vanishing[] = {2681, 2858}; // the squares of their remaining velocities underflow
 	for (int k = 0; k < 602; k++) {
 		struct specimen specimen;
 		specimen_creeping(&specimen, k < 600 ? k : vanishing[k - 600], 1);
@@ -253,7 +254,7 @@ static void a_body_that_creeps_where_it_yielded_is_followed(void **state)
 	}
 }
 
-/* They go the same way but for roundings, and whether they touch the while is one of these. */
+/* The bodies move alike except for rounding errors, which decide whether they touch meanwhile. */
 static void bodies_alike_but_for_roundings_are_followed(void **state)
 {
 	(void)state;
@@ -266,7 +267,7 @@ static void bodies_alike_but_for_roundings_are_followed(void **state)
 	}
 }
 
-/* Of a contact past critical damping the faster of two roots sets the steps: 60 times as fast as the frequency, at most. */
+/* Beyond critical damping of the contact the faster of two decay rates sets the steps: at most 60 times the frequency. */
 static void a_damped_body_pressed_on_a_wall_is_followed(void **state)
 {
 	(void)state;
@@ -279,7 +280,7 @@ static void a_damped_body_pressed_on_a_wall_is_followed(void **state)
 	}
 }
 
-/* Bodies that all but stick to each other lose half of their motion in a second: minutes later there is nothing to follow. */
+/* Bodies in almost plastic contact lose half of their motion in a second: after minutes no motion remains to be followed. */
 static void a_motion_that_dies_away_in_silence_is_over(void **state)
 {
 	(void)state;
@@ -298,7 +299,7 @@ static void a_motion_that_dies_away_in_silence_is_over(void **state)
 	specimen_free(&specimen);
 }
 
-/* At rest, then under a constant acceleration: undamped, a floor swings as 1 - cos. */
+/* From rest under a constant acceleration an undamped floor moves as 1 - cos. */
 static void a_floor_without_contact_is_all_free_motion(void **state)
 {
 	(void)state;
@@ -315,10 +316,10 @@ static void a_floor_without_contact_is_all_free_motion(void **state)
 	assert_int_equal(f.maps, 400);
 	assert_int_equal(f.pieces, 400);
 	check_near(f.next.u, (1 - cos(w * 400 * h)) / (w * w), 400 * DBL_EPSILON / w);
-	check_near(f.largest, 2, 0.15); // a bound: of -w^2 u, by magnitudes of its terms
+	check_near(f.largest, 2, 0.15); // an upper bound: w^2 u by the magnitudes of its terms
 }
 
-/* A floor so stiff that a series does not reach over a sample goes on in shorter pieces. */
+/* If a floor is so stiff that a series does not cover a sample, shorter pieces follow it. */
 static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 {
 	(void)state;
@@ -332,8 +333,8 @@ static void a_floor_too_fast_for_the_samples_is_followed(void **state)
 	specimen_free(&specimen);
 }
 
-/* A body that has yielded goes on as long as its velocity keeps its sign, which it may lose and have again between two
- * samples: white noise does that to it. */
+/* A yielded body stays on its branch as long as its velocity keeps its sign; under white noise the velocity may
+ * change its sign twice between two samples. */
 static void a_body_that_turns_between_two_samples_is_followed(void **state)
 {
 	(void)state;

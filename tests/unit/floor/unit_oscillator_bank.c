@@ -14,7 +14,7 @@ static _Alignas(64) double omega[OSCILLATORS], state_of[2][3][OSCILLATORS];
 static _Alignas(64) char scratch[POUND_SPECTRUM_SCRATCH];
 static struct pound_segment_powers powers;
 
-/* A bank at rest; oscillators beyond n are the last one once more. */
+/* A bank at rest; oscillators beyond n are copies of the last one. */
 static struct pound_bank bank_of(const double *w, int n, double xi)
 {
 	pound_segment_powers_fill(&powers);
@@ -32,14 +32,14 @@ static struct pound_bank bank_of(const double *w, int n, double xi)
 	return bank;
 }
 
-/* Rides over the stretch as it stands. */
+/* Moves the bank over the current stretch. */
 static void move(const struct pound_bank *bank)
 {
 	const struct pound_bank_input move = {.stretch = &stretch, .time_step = 0.01};
 	assert_true(pound_oscillator_bank_lanes(0, bank, &move, scratch));
 }
 
-/* One more piece of the stretch: a polynomial over its own time. */
+/* Appends a piece to the stretch: a polynomial over the piece's own time. */
 static struct pound_floor_piece *piece_next(double step, int order)
 {
 	struct pound_floor_piece *piece = &stretch.piece[stretch.n++];
@@ -57,7 +57,7 @@ static void polynomial_bound(struct pound_polynomial *a, int order)
 	}
 }
 
-/* A pulse sin(pi t/td) in equal pieces of its Taylor series, then rest for `quiet`. */
+/* A pulse sin(pi t/td) in equal pieces of its Taylor series, then rest for the time `quiet`. */
 static void half_sine(double td, int pieces, double quiet)
 {
 	stretch.n = 0;
@@ -71,7 +71,7 @@ static void half_sine(double td, int pieces, double quiet)
 	piece_next(quiet, 0);
 }
 
-/* Shock spectrum of a half sine A sin(pi t/td), undamped: td/T and max |w^2 u|/A, computed elsewhere. */
+/* Shock spectrum of a half sine A sin(pi t/td), undamped: td/T and max |w^2 u|/A, computed by another program. */
 static const double shocks[][2] = {
     {.1, .396273548}, {.25, .942809042}, {.5, 1.570796327}, {.75, 1.763355757}, {.80994, 1.768457654},
     {1, 1.732050808}, {1.5, 1.5},        {2, 1.268075355},  {3, 1.169913495},   {5, 1.099801602},
@@ -95,7 +95,7 @@ static void a_half_sine_gives_the_known_shock_spectrum(void **state)
 	}
 }
 
-// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed elsewhere to all printed digits
+// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed digits
 static const double trains[][3] = {
     {0.02, 1, 6.962120396}, {0.02, 2, 8.521925099}, {0.02, 4, 9.808148215}, {0.02, 8, 12.229549038},
     {0.05, 1, 3.402154673}, {0.05, 2, 3.967773484}, {0.05, 4, 5.176797556}, {0.05, 8, 8.063219064},
@@ -118,8 +118,8 @@ static void a_train_of_velocity_steps_gives_the_exact_values(void **state)
 	}
 }
 
-/* A constant acceleration from rest: twice the static displacement undamped, 1 + exp(-xi pi/s) of it damped. */
-// the fastest takes 5e5 steps, each rounds by 2e-16
+/* A constant acceleration from rest: peak of twice the static displacement undamped, 1 + exp(-xi pi/s) times it damped. */
+// the fastest takes 5e5 steps, each with a rounding error of 2e-16
 static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 {
 	(void)state;
@@ -140,7 +140,7 @@ static void a_step_of_acceleration_overshoots_as_it_must(void **state)
 	}
 }
 
-/* An impulse of a short polynomial pulse, as the contact gives it, drives the second set alone. */
+/* The impulse of a short polynomial pulse, as from a contact, drives only the second set of oscillators. */
 static void the_contact_s_part_drives_its_own_oscillators(void **state)
 {
 	(void)state;
@@ -158,7 +158,7 @@ static void the_contact_s_part_drives_its_own_oscillators(void **state)
 	check_near(bank.top[POUND_DRIVE_FLOOR][0], 0, 0);
 }
 
-/* However a piece is cut, it is the same motion. */
+/* The motion does not depend on how it is divided into pieces and steps. */
 static void shorter_steps_change_nothing(void **state)
 {
 	(void)state;
@@ -178,7 +178,7 @@ static void shorter_steps_change_nothing(void **state)
 	}
 }
 
-/* Motions whose squares are no numbers any more have the spectrum of larger ones: proofs do not rest on squares then. */
+/* Motions whose squares underflow have the spectrum of larger ones: the proofs then do without squares. */
 static void tiny_motions_have_the_spectrum_of_large_ones(void **state)
 {
 	(void)state;
@@ -227,7 +227,7 @@ static void strongly_damped_oscillators_are_exact(void **state)
 	}
 }
 
-/* A slow oscillator takes the steps of the fastest of its group, and rounds no more for that. */
+/* A slow oscillator takes the steps of the fastest of its group, without larger rounding errors. */
 static void a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group(void **state)
 {
 	(void)state;
@@ -246,7 +246,7 @@ static void a_slow_oscillator_does_not_depend_on_the_fast_ones_of_its_group(void
 	check_near(top[1] / top[0], 1, 2e-14);
 }
 
-/* A constant and a power of time whose coefficient has not died away: its series goes on behind that. */
+/* A constant plus a power of time with a coefficient that is not negligible: the oscillator's series continues beyond it. */
 static void a_piece_whose_last_coefficient_is_no_rounding_is_followed_to_rounding(void **state)
 {
 	(void)state;

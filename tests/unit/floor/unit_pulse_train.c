@@ -1,4 +1,4 @@
-/* unit_pulse_train.c - idealised impacts against exact values and limits. */
+/* unit_pulse_train.c - idealized impacts against exact values and limits. */
 #include <math.h>
 
 #include "engine/floor/pulse_train.h"
@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed elsewhere to all printed digits
+// 15 pulses every half period of w0, oscillators of 2 n w0: PSA/(v1 2 w0), computed by another program to all printed digits
 static const struct {
 	double xi, n, exact;
 } trains[] = {
@@ -63,13 +63,13 @@ static void undamped_pulses_in_step_add_up(void **state)
 	check_near(pound_pulse_train_peaks(&dirac, 4 * pi, 0), 40 * 4 * pi, 1e-10);
 }
 
-/* Far below the pulses' own frequency the floor is a step of N v1 in a time that the oscillator does not see. */
+/* Far below the frequency of the pulses the floor's velocity is a step of N v1, as the oscillator hardly moves meanwhile. */
 static void a_slow_oscillator_sees_all_pulses_as_one(void **state)
 {
 	(void)state;
 	struct pound_pulse_train dirac = {.speed = 1, .spacing = 0.5, .pulses = 15};
 	double w = 1e-5;
-	// the pulses are spread over w 7 s = 7e-5 rad of its motion
+	// the pulses take w 7 s = 7e-5 rad of the oscillator
 	check_near(pound_pulse_train_train(&dirac, w, 0), 15 * w, 15 * w * 7e-5 * 7e-5);
 }
 
@@ -83,7 +83,7 @@ static void no_pulse_gives_nothing(void **state)
 	check_near(pound_pulse_train_peaks(&never, 5, 0), 0, 0);
 }
 
-/* Between pulses and beyond, against the motion sampled densely: never less than a sample, and little more. */
+/* Between and after pulses, against densely sampled motion: never below a sample, and little above the largest. */
 static void no_sampled_displacement_is_larger(void **state)
 {
 	(void)state;
@@ -99,7 +99,7 @@ static void no_sampled_displacement_is_larger(void **state)
 			}
 			double psa = pound_pulse_train_train(&dirac, w, xi);
 			assert_true(psa >= top * (1 - 1e-12));
-			// a peak missed by half a step, (pi/500)^2/2, of each of the pulses' parts
+			// a peak missed by half a sample step: (pi/500)^2/2 of each pulse's contribution
 			check_near(psa, top, 4 * w * 2e-5 * 2);
 		}
 }

@@ -1,4 +1,4 @@
-/* unit_segment_powers.c - derivatives of powers where segments of a piece begin, against factorials and the powers themselves. */
+/* unit_segment_powers.c - derivatives of powers at the start of segments of a piece, against factorials and the powers. */
 #include <math.h>
 
 #include "engine/floor/segment_powers.h"
@@ -18,7 +18,7 @@ static void the_whole_piece_gives_factorials(void **state)
 			check_near(powers.start[n][k] * pow(n, k) / tgamma(k + 1), 1, 1e-14);
 }
 
-/* The series of a segment gives the power at its middle and at its end. */
+/* The series of a segment gives the power at the middle and at the end of the segment. */
 static void the_series_of_a_segment_is_the_power(void **state)
 {
 	(void)state;
@@ -34,7 +34,7 @@ static void the_series_of_a_segment_is_the_power(void **state)
 				}
 }
 
-/* Where it begins a segment takes on from the one before. */
+/* A segment begins with the values at the end of the preceding one. */
 static void segments_begin_where_the_one_before_ends(void **state)
 {
 	(void)state;

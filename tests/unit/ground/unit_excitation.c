@@ -1,5 +1,4 @@
-/* What an excitation's samples must be whatever the noise; the noise itself is tested in unit_noise and
- * unit_filter. */
+/* Properties of an excitation's samples that do not depend on the noise; unit_normals and unit_kanai_tajimi test the noise. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -9,7 +8,7 @@
 #include "engine/numeric/cpu_width.h"
 #include "tests/support/check.h"
 
-/* whose samples are made; those of a suite are records */
+/* types with generated samples; samples of a suite are records */
 enum { KANAI_TAJIMI, WHITE_NOISE, HARMONIC, RECORD, TYPES, MANY = 200000 };
 
 static const struct pound_stream noise = {
@@ -103,7 +102,7 @@ static void the_last_sample_is_the_one_nearest_to_the_end(void **state)
 	assert_int_equal(pound_excitation_samples(&e), 5);
 }
 
-/* exactly, and without overflow or underflow on the way: the shape is that of peak 1 */
+/* exactly, and without overflow or underflow: the shape is computed for a peak of 1 */
 static void noise_has_exactly_the_peak_asked(void **state)
 {
 	(void)state;
@@ -121,7 +120,7 @@ static void noise_has_exactly_the_peak_asked(void **state)
 		}
 }
 
-/* Over the signal without rise and fall, up to the scale to the peak, which one sample gives. */
+/* Relative to the signal without rise and fall; one sample gives the factor of the peak. */
 static void noise_rises_and_falls_along_a_trapezoid(void **state)
 {
 	(void)state;
@@ -162,8 +161,7 @@ static void kanai_tajimi_noise_is_the_filter_output_scaled(void **state)
 		check_near(a[k], b[k] / most, 0x1p-52);
 }
 
-/* n samples of variance v: the mean of a_k a_k+lag has standard error v/sqrt n, that of a_k^2 sqrt 2 times as
- * much */
+/* n samples of variance v: the mean of a_k a_k+lag has the standard error v/sqrt n, and the mean of a_k^2 sqrt 2 times that */
 static void white_noise_has_no_memory(void **state)
 {
 	(void)state;
@@ -180,7 +178,7 @@ static void white_noise_has_no_memory(void **state)
 	for (int k = 0; k < n; k++)
 		fourth += pow(a[k], 4) / (variance * variance) / n;
 	check_near(sum, 0, 5 * sqrt(variance / n));
-	check_near(fourth, 3, 5 * sqrt(24.0 / n)); /* of the kurtosis: variance 24 / n */
+	check_near(fourth, 3, 5 * sqrt(24.0 / n)); /* kurtosis: variance 24 / n */
 	for (int lag = 1; lag < 300; lag++) {
 		double product = 0;
 		for (int k = 0; k + lag < n; k++)
@@ -197,10 +195,10 @@ static void a_harmonic_is_a_sine_from_zero(void **state)
 	const int n = pound_excitation_samples(&e);
 	fill(&e, noise, a);
 	assert_true(a[0] == 0);
-	// the phase, up to 20 turns, is off by 3 roundings
+	// the phase, up to 20 periods, has an error of 3 roundings
 	for (int k = 0; k < n; k++)
 		check_near(a[k], 2.5 * sin(2 * M_PI * 2 * 0.01 * k), 2.5 * 2 * M_PI * 20 * 4 * 0x1p-53);
-	// the peak is the sine's even where no sample falls on it
+	// the peak is the sine's even if no sample is at the peak
 	e.time_step = 0.4;
 	e.duration = 0.8;
 	fill(&e, noise, a);
@@ -215,7 +213,7 @@ static void a_record_is_copied(void **state)
 	assert_memory_equal(a, e.record, 5 * sizeof(double));
 }
 
-/* both samples of a signal of one step are at the feet of the trapezoid; without feet they are not */
+/* both samples of a signal of one step are at the ends of the trapezoid; without rise and fall they are not zero */
 static void a_signal_of_one_step_is_finite(void **state)
 {
 	(void)state;
@@ -234,7 +232,7 @@ static void a_signal_of_one_step_is_finite(void **state)
 	}
 }
 
-/* whatever positive numbers a study holds: numbers the powers of which overflow too */
+/* for any positive numbers in a study, including numbers whose powers overflow */
 static void extreme_filters_give_finite_noise(void **state)
 {
 	(void)state;
@@ -257,8 +255,7 @@ static void extreme_filters_give_finite_noise(void **state)
 	}
 }
 
-/* The hash was taken from gcc -O2; any other compiler, optimisation, processor and thread must give it too.
- * */
+/* The hash is from gcc -O2; every other compiler, optimization, processor and thread must give the same. */
 static void the_bits_are_the_same_everywhere(void **state)
 {
 	(void)state;
@@ -280,13 +277,13 @@ static void the_bits_are_the_same_everywhere(void **state)
 	assert_int_equal(hash, 0x49798a6db6651703);
 }
 
-/* Below 90 % of the Nyquist frequency, away from the ends, where the sine begins and ends at once. */
+/* Below 90 % of the Nyquist frequency, away from the ends, where the sine begins and ends abruptly. */
 static void a_sine_is_interpolated_as_a_sine(void **state)
 {
 	(void)state;
 	enum { N = 400 };
 	double sine[N], twice[2 * N - 1];
-	for (double cycles = 0; cycles <= 0.45; cycles += 0.01) { // per sample
+	for (double cycles = 0; cycles <= 0.45; cycles += 0.01) { // cycles per sample
 		for (int i = 0; i < N; i++)
 			sine[i] = cos(2 * 3.14159265358979323846 * cycles * i + 0.3);
 		pound_interpolation_twice(N, sine, twice);

@@ -2,9 +2,9 @@
  *
  *   1. the exponentials of the poles of the continuous filter in 80-bit arithmetic
  *   2. the autocovariance of the continuous process by residues at the poles of its transfer function
- *   3. the transfer function itself, against the Welch estimate of generated signals
+ *   3. the transfer function, against the Welch estimate from generated signals
  *
- * Limits of random quantities are 5 standard errors of a normal estimate: one in 1.7 million. */
+ * Limits of random quantities are 5 standard errors of a normal estimate: exceeded once in 1.7 million. */
 #include <complex.h>
 #include <math.h>
 #include <string.h>
@@ -53,8 +53,8 @@ static void transition(const struct pound_filter *f, const double y[N], double t
 		to[j] = y[j] + (j < N - 1 ? y[j + 1] : 0) - f->pole[N - 1 - j] * y[0];
 }
 
-/* The polynomial is zero at exp(p) - 1 for each pole p of the continuous filter: to the rounding of its terms there and of
- * expm1 in 80 bits, a sum of 40 terms of it. */
+/* The polynomial is zero at exp(p) - 1 for each pole p of the continuous filter: to the rounding error of its terms
+ * there and of expm1 in 80 bits, a sum of 40 such errors. */
 static void the_poles_of_a_step_are_those_of_the_continuous_filter(void **state)
 {
 	(void)state;
@@ -80,7 +80,7 @@ static void the_poles_of_a_step_are_those_of_the_continuous_filter(void **state)
 	}
 }
 
-/* P = F P F^T + b b^T, each entry to the rounding of a sum of its size */
+/* P = F P F^T + b b^T, each entry to the rounding error of a sum of its size */
 static void the_stationary_covariance_stays(void **state)
 {
 	(void)state;
@@ -138,9 +138,9 @@ static double covariance_at_lag(const struct pound_filter *f, int lag)
 	return x[0];
 }
 
-/* The samples' covariance at every lag is the continuous process's, whatever the step: the exact
- * discretisation has no step error.  Rounding: one part in 2^52 of the variance for each step and state, and
- * that of the coefficients, which moves the poles of the high pass by the ratio more. */
+/* At every lag the samples have the covariance of the continuous process, whatever the step: the exact discretization
+ * has no step error.  Rounding: 2^-52 of the variance for each step and state, and the rounding of the coefficients,
+ * which moves the poles of the high pass by the inverse ratio more. */
 static void samples_have_the_autocovariance_of_the_continuous_process(void **state)
 {
 	(void)state;
@@ -156,8 +156,8 @@ static void samples_have_the_autocovariance_of_the_continuous_process(void **sta
 	}
 }
 
-/* 2.0333333 pi S0 w_e for the Kanai-Tajimi filter alone (a high pass at 0 changes nothing); unit intensity
- * per step is S0 = 1 / 2 pi.  A corner at ratio r takes away a part of order r. */
+/* 2.0333333 pi S0 w_e for the Kanai-Tajimi filter without high pass (a corner at 0 changes nothing); unit intensity
+ * per step is S0 = 1 / 2 pi.  A corner at ratio r reduces the variance by a fraction of order r. */
 static void the_kanai_tajimi_variance_is_the_known_one(void **state)
 {
 	(void)state;
@@ -173,8 +173,8 @@ static void the_kanai_tajimi_variance_is_the_known_one(void **state)
  *   m2 = c1 / D     m3 = (alpha delta (delta + alpha gamma) + beta gamma (beta + alpha gamma)) / D
  *   D = 2 alpha gamma ((beta - delta)^2 + (alpha + gamma) (alpha delta + beta gamma))
  *
- * The poles of the high pass are the ratio times slower than the others: the rounding of the polynomial's coefficients moves
- * them by that much more. */
+ * The poles of the high pass are slower than the others by the ratio: the rounding of the polynomial's coefficients
+ * moves them more by the inverse of the ratio. */
 static void the_variance_is_right_at_extreme_steps_and_ratios(void **state)
 {
 	(void)state;
@@ -208,11 +208,11 @@ static struct pound_stream stream_of(int row)
 	return (struct pound_stream){.seed = 5, .what = POUND_STREAM_NOISE, .row = (uint32_t)row};
 }
 
-/* Welch's estimate: the mean over independent signals of |sum of window * a * exp(-i omega k)|^2 / sum of
- * window^2, a Hann window.  Its expectation is the sum over lags of R times the window's own correlation; the
- * mean of n such, each exponentially distributed, has relative standard error 1/sqrt n.  So against |H|^2 it
- * may be off by 5 of these and by what window and sampling do to the spectrum, which is computed and must
- * itself be below 3 % here. */
+/* Welch's estimate: the mean over independent signals of |sum of window * a * exp(-i omega k)|^2 / sum of window^2,
+ * with a Hann window.  Its expectation is the sum over lags of R times the autocorrelation of the window; the mean of
+ * n estimates, each exponentially distributed, has the relative standard error 1/sqrt n.  So it may differ from |H|^2
+ * by 5 standard errors and by the effect of window and sampling on the spectrum, which is computed and must itself be
+ * below 3 % here. */
 static void the_spectrum_is_the_analytic_one(void **state)
 {
 	(void)state;
@@ -260,8 +260,8 @@ static void the_spectrum_is_the_analytic_one(void **state)
 	}
 }
 
-/* Variance of the estimate (1/n) sum a_k a_k+lag of a normal process: (1/n) sum over j of R_j^2 + R_j+lag
- * R_j-lag (Bartlett); a long signal, and its start and end over many signals. */
+/* Variance of the estimate (1/n) sum a_k a_k+lag of a normal process: (1/n) sum over j of R_j^2 + R_j+lag R_j-lag
+ * (Bartlett); of a long signal, and of the start and the end of many signals. */
 static void the_variance_and_autocovariance_are_the_analytic_ones(void **state)
 {
 	(void)state;
@@ -302,7 +302,7 @@ static void a_signal_is_stationary_from_its_first_sample(void **state)
 	check_near(neighbours, r1, 5 * sqrt((r0 * r0 + r1 * r1) / ROWS));
 }
 
-/* the correlation of n pairs of independent numbers has standard error 1/sqrt n */
+/* the correlation of n pairs of independent numbers has the standard error 1/sqrt n */
 static void signals_of_other_rows_samples_and_indices_are_uncorrelated(void **state)
 {
 	(void)state;
@@ -324,7 +324,7 @@ static void signals_of_other_rows_samples_and_indices_are_uncorrelated(void **st
 		check_near(product[other] / PAIRS, 0, 5 / sqrt(PAIRS));
 }
 
-/* a shorter signal is the beginning of a longer one, at every length around the chunks noise is made in */
+/* a shorter signal is the beginning of a longer one, at every length around the chunks in which noise is generated */
 static void the_length_of_a_signal_does_not_change_its_samples(void **state)
 {
 	(void)state;
@@ -339,7 +339,8 @@ static void the_length_of_a_signal_does_not_change_its_samples(void **state)
 	}
 }
 
-/* Signals of other filters and lengths beside it, at any width, in groups that fill their lanes and in ones that do not. */
+/* Signals of other filters and lengths in the other lanes, at any width, in groups that fill the lanes and in groups
+ * that do not. */
 static void a_signal_has_the_same_bits_whatever_is_beside_it(void **state)
 {
 	(void)state;

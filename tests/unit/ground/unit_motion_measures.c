@@ -1,4 +1,4 @@
-/* unit_motion_measures.c - peaks, Arias intensity and duration of motions that have them in closed form. */
+/* unit_motion_measures.c - peaks, Arias intensity and duration of motions with closed forms. */
 #include <float.h>
 #include <math.h>
 
@@ -28,7 +28,7 @@ static void measures_of_motions_with_a_closed_form(void **state)
 	check_near(m.arias, PI / (2 * G) * 3, 8 * DBL_EPSILON);
 	// int a^2 = ((t - 1)^3 + 1)/3, 3 in all: 1 - cbrt(0.55) and 1 + cbrt(7.55)
 	check_near(m.duration, cbrt(7.55) + cbrt(0.55), 16 * DBL_EPSILON);
-	// a triangle and its mirror image: the velocity comes back to 0, and peaks at a sample and between two
+	// a triangle and its mirror image: the velocity returns to 0, with peaks at a sample and between two
 	const double doublet[] = {0, 1, 0, -1, 0};
 	pound_motion_measure(5, doublet, 1, &m);
 	check_near(m.pgv, 1, 8 * DBL_EPSILON);

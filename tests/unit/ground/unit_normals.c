@@ -1,4 +1,4 @@
-/* Normal numbers against Box-Muller in the C library's words, and against the normal law. */
+/* Normal numbers against Box-Muller with the C library's functions, and against the normal distribution. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +34,7 @@ static int draw_numbers(void **state)
 	return 0;
 }
 
-/* The test of random.h ties single draws to the published words of Philox; a wrong bit in a word would move a
+/* The test of random.h compares single draws with the published words of Philox; a wrong bit in a word would change a
  * normal number by 2^-32 or more. */
 static void chunks_hold_the_words_of_single_draws(void **state)
 {
@@ -48,7 +48,7 @@ static void chunks_hold_the_words_of_single_draws(void **state)
 			for (int w = 0; w < NOISE_WORDS; w += 2) {
 				const double radius = sqrt(-2 * log((word.v[w] + 0.5) * 0x1p-32));
 				const double angle = 2 * M_PI * ((word.v[w + 1] + 0.5) * 0x1p-32);
-				// an angle rounded to 53 bits is off by 2^-51
+				// an angle rounded to 53 bits has an error of 2^-51
 				check_near(z[w][l], radius * cos(angle), 7 * 0x1p-50);
 				check_near(z[w + 1][l], radius * sin(angle), 7 * 0x1p-50);
 			}
@@ -79,7 +79,7 @@ static void lanes_of_any_width_give_the_same_bits(void **state)
 		}
 }
 
-/* Each within 5 standard errors; moments of the normal law: 0, 1, 0, 3, variances 1, 2, 15, 96. */
+/* Each within 5 standard errors; moments of the normal distribution: 0, 1, 0, 3, variances 1, 2, 15, 96. */
 static void the_first_four_moments_are_normal(void **state)
 {
 	(void)state;
@@ -94,8 +94,7 @@ static void the_first_four_moments_are_normal(void **state)
 		check_near(sum[j] / NUMBERS, moment[j], 5 * sqrt(variance[j] / NUMBERS));
 }
 
-/* of products z z' and (z^2 - 1) (z'^2 - 1), whose variances are 1 and 4: of one draw and of neighbours in
- * time */
+/* products z z' and (z^2 - 1) (z'^2 - 1) have the variances 1 and 4: within one draw and between neighbors in time */
 static void numbers_are_uncorrelated_and_so_are_their_squares(void **state)
 {
 	(void)state;
@@ -118,8 +117,7 @@ static int ascending(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-/* Kolmogorov-Smirnov: sqrt(n) D exceeds 2.23 once in 10,000; and beyond 3.5 a Poisson number of 59.6 on
- * average. */
+/* Kolmogorov-Smirnov: sqrt(n) D exceeds 2.23 once in 10,000; the number beyond 3.5 is Poisson with a mean of 59.6. */
 static void the_distribution_is_normal_out_to_its_tails(void **state)
 {
 	(void)state;

@@ -105,7 +105,7 @@ static void an_argument_takes_what_it_says(void **state)
 		assert_non_null(argument);
 		if (api_takes(argument, cases[i].value) != cases[i].taken)
 			fail_msg("%s=%s", cases[i].name, cases[i].value);
-		// what is absent is taken too
+		// the default is valid, too
 		assert_true(!argument->absent || api_takes(argument, argument->absent));
 	}
 	struct reading *api = document();
@@ -127,7 +127,7 @@ static void every_example_of_the_document_is_what_its_schema_says(void **state)
 	for (int i = 0; examples[i].name; i++) {
 		static struct problems problems;
 		struct pound_study *whole = study_from_json(examples[i].text, strlen(examples[i].text), &problems);
-		if (!whole) // a design alone
+		if (!whole) // a design only
 			continue;
 		n++;
 		study_free(whole);
@@ -167,7 +167,7 @@ static void every_reference_of_the_document_leads_somewhere(void **state)
 	free(text);
 }
 
-/* A study with another text at one member's place, judged by both. */
+/* A study with one member's text replaced, validated by schema and reader. */
 static void judged_alike(const struct reading *api, const char *study, const char *what, bool valid)
 {
 	static struct problems problems;
@@ -185,7 +185,7 @@ static void judged_alike(const struct reading *api, const char *study, const cha
 	reading_close(value);
 }
 
-/* Every number of a response or sensitivity study that stands in the scene or the design, at its ends and beyond. */
+/* Every number of contacts and oscillators, at the ends of its range and beyond. */
 static void the_schema_and_the_reader_take_and_refuse_the_same_studies(void **state)
 {
 	struct reading *api = document();
@@ -213,7 +213,7 @@ static void the_schema_and_the_reader_take_and_refuse_the_same_studies(void **st
 				continue;
 			const bool contact = strstr(field->pattern, "contact") != NULL;
 			const bool frequency = !strcmp(name, "frequency_hz");
-			// a contact of a model that reads the member, with what that model requires besides
+			// a contact model that reads the member, with the other members that this model requires
 			char model[128] = "\"gap_m\": 0";
 			if (contact) {
 				int row = 0;

@@ -1,4 +1,4 @@
-/* The head of a request: what is refused before anything is done for it. */
+/* The head of a request: requests that are refused before they are processed. */
 #include "schema/http/http_head.h"
 
 #include <limits.h>
@@ -6,7 +6,7 @@
 
 #include "tests/support/check.h"
 
-/* "Name: value" lines, one after the other, as a whole head. */
+/* A head from "Name: value" lines. */
 static struct head judged(const char *target, const char *const *lines, bool needs_host)
 {
 	struct head head;
@@ -69,7 +69,7 @@ static void a_head_has_no_byte_but_those_of_its_lines(void **state)
 		text, sizeof text - 1, n, fault \
 	}
 	static const struct {
-		const char *bytes; // from the end of the version
+		const char *bytes; // from the end of the version on
 		size_t n;
 		int n_lines;
 		enum api_fault fault;
@@ -79,7 +79,7 @@ static void a_head_has_no_byte_but_those_of_its_lines(void **state)
 	    CASE("\0\0A\0 b\0c\0\0\0\0", 1, API_BAD_REQUEST),    // A: b NUL c
 	    CASE("\0\0A\0 b\0\0\0\0\0", 1, API_BAD_REQUEST),     // A: b NUL
 	    CASE("\0\0A\0 b\0\0 c\0\0\0\0", 1, API_BAD_REQUEST), // folded
-	    CASE("\0A\0 b\0\0", 1, API_BAD_REQUEST),             // LF alone
+	    CASE("\0A\0 b\0\0", 1, API_BAD_REQUEST),             // LF without CR
 	    CASE("\0\0\0 x\0\0", 0, API_BAD_REQUEST),            // a line without a name
 	};
 #undef CASE

@@ -1,4 +1,4 @@
-/* unit_bootstrap.c - the law of the resamples, and intervals whose ends are known. */
+/* unit_bootstrap.c - the distribution of the resamples, and intervals with known ends. */
 #include "engine/indices/bootstrap_sums.h"
 #include "engine/indices/indices.h"
 #include "engine/numeric/cpu_width.h"
@@ -8,7 +8,7 @@
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
 
-/* What a statistic is of and what it saw: the sums over all resamples of its means and of their products. */
+/* The moments of a statistic, and sums over all resamples of the means and of their products. */
 struct seen {
 	int n_moments, resamples;
 	double (*moment)(int row, int k);
@@ -22,7 +22,7 @@ static void moments_of_seen(const void *subject, int row, double *m)
 		m[k] = seen->moment(row, k);
 }
 
-/* The first value, of all rows, is -1; the others are the resamples' numbers. */
+/* The first value, from all rows, is -1; the others are the numbers of the resamples. */
 static void watch(const void *subject, const double *mean, double *value)
 {
 	struct seen *seen = (struct seen *)subject;
@@ -60,7 +60,7 @@ static double by_128(int row, int k)
 	return row / 128 == k;
 }
 
-/* Counts of resampled rows in groups of given shares against the multinomial law's mean and covariance. */
+/* Counts of resampled rows in groups, against the mean and the covariance of the multinomial distribution. */
 static void check_multinomial(int n_rows, int groups, double (*moment)(int, int), const double *share,
                               uint64_t seed)
 {
@@ -134,8 +134,8 @@ static void first_row(const void *subject, int row, double *m)
 	*m = row == 0;
 }
 
-/* 7 for a resample that holds row 0, undefined for the others; undefined for all; and for those that hold it once, as all
- * rows do. */
+/* 7 for a resample that contains row 0, otherwise undefined; always undefined; undefined for resamples that contain
+ * row 0 once, as all rows do. */
 static void seven_or_nothing(const void *subject, const double *mean, double *value)
 {
 	(void)subject;
@@ -222,7 +222,7 @@ struct kept {
 	double value[POUND_RESAMPLES + 1];
 };
 
-/* The first `wanted` values, the one of all rows among them, in no order; NAN afterwards. */
+/* The first `wanted` values, including the one from all rows, in no order; NAN afterwards. */
 static void keep_mean(const void *subject, const double *mean, double *value)
 {
 	struct kept *kept = (struct kept *)subject;

@@ -1,4 +1,4 @@
-/* unit_chaos_expansion.c - indices with a polynomial control variate: polynomials exactly, the known functions within limits. */
+/* unit_chaos_expansion.c - indices with a polynomial control variate: polynomials exactly, known functions within limits. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -30,7 +30,7 @@ static struct pound_closed_results indices_of(const struct pound_sample_values *
 
 static const struct function_noise noiseless = {1, 0.0, true};
 
-/* x1 + 2 x2 x3 + x1 x2^2 of centred uniform inputs of variance 1, with terms of total degree 3. */
+/* x1 + 2 x2 x3 + x1 x2^2 of centered uniform inputs of variance 1, with terms of total degree 3. */
 static double cubic(const double *u)
 {
 	double x[D];
@@ -42,7 +42,7 @@ static double cubic(const double *u)
 static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 {
 	(void)state;
-	// x1 (1 + x2^2) + 2 x2 x3 with E x^2 = 1, Var x^2 = 9/5 - 1: parts x1: 4, x1 x2: 4/5, x2 x3: 4
+	// x1 (1 + x2^2) + 2 x2 x3 with E x^2 = 1, Var x^2 = 9/5 - 1: variances x1: 4, x1 x2: 4/5, x2 x3: 4
 	static const double first[D] = {4.0 / 8.8, 0.0, 0.0, 0.0};
 	static const double total[D] = {4.8 / 8.8, 4.8 / 8.8, 4.0 / 8.8, 0.0};
 	const struct function f = {.name = "cubic", .y = cubic, .variance = 8.8};
@@ -50,7 +50,7 @@ static void a_polynomial_within_the_degree_is_met_exactly(void **state)
 	double *u = function_design(200, 1);
 	struct pound_closed_results got = indices_of(&values, u, false);
 	for (int j = 0; j < D; j++) {
-		// rounding of normal equations of 126 terms, whose condition is some tens
+		// rounding errors of normal equations of 126 terms, whose condition number is some tens
 		check_near(got.first[j].value, first[j], 1e-11);
 		check_near(got.total[j].value, total[j], 1e-11);
 		check_near(got.total[j].high - got.total[j].low, 0.0, 1e-11);
@@ -124,8 +124,8 @@ static void nothing_is_defined_where_nothing_varies(void **state)
 
 enum { SEEDS = 20, N = 1000 };
 
-/* Over SEEDS designs: root mean square errors over the inputs, the largest mean error of an index in units of its own
- * root mean square, the mean coverage. */
+/* Over SEEDS designs: root mean square errors over the inputs, the largest mean error of an index relative to its
+ * root mean square, and the mean coverage. */
 struct performance {
 	double first, total, bias, coverage;
 };
@@ -159,7 +159,7 @@ static struct performance performance_of(const struct function *f, struct functi
 static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **state)
 {
 	(void)state;
-	// measured over 150 designs; an RMSE over 20 designs and 4 inputs is good to some 11 %
+	// measured over 150 designs; an RMSE over 20 designs and 4 inputs has a standard error of some 11 %
 	static const struct {
 		const char *name;
 		double first, total;
@@ -172,7 +172,7 @@ static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **st
 		struct performance p = performance_of(function_named(measured[k].name), noiseless);
 		assert_true(p.first <= 1.3 * measured[k].first);
 		assert_true(p.total <= 1.3 * measured[k].total);
-		assert_true(p.bias <= 4.0 / sqrt(SEEDS)); // four deviations of a mean
+		assert_true(p.bias <= 4.0 / sqrt(SEEDS)); // four standard errors of a mean
 		// nominal .95; 160 intervals that are not independent
 		assert_true(p.coverage >= 0.90);
 	}
@@ -220,18 +220,19 @@ static void a_polynomial_that_cannot_follow_does_no_harm(void **state)
 		free(u);
 		function_values_free(&values);
 	}
-	// 210 terms for 1200 samples: without the share taken of the fits 1.3 times the plain estimate's error, with it 0.8
+	// 210 terms for 1200 samples: the full polynomial would have 1.3 times the error of the plain estimate, the
+	// weighted one 0.8
 	assert_true(square <= plain);
 }
 
-/* Outputs one after the other: of all rows, another of the same, two without a row, fewer rows, other groups. */
+/* Successive outputs: of all rows, another of the same rows, two without one row, of fewer rows, with other groups. */
 static void what_is_kept_of_a_design_changes_no_bit(void **state)
 {
 	(void)state;
 	enum { ROWS = 200, FEWER = 100 };
 	static const struct {
 		const char *of;
-		int n_rows, failed; /* -1: none */
+		int n_rows, failed; /* -1: no failed row */
 		int groups;
 	} cases[] = {{"cusp", ROWS, -1, 0},  {"steps", ROWS, -1, 0}, {"steps", ROWS, 7, 0}, {"cusp", ROWS, 8, 0},
 	             {"cusp", FEWER, -1, 0}, {"cusp", FEWER, -1, 8}, {"cusp", ROWS, -1, 0}};

@@ -8,7 +8,7 @@
 
 enum { D = FUNCTION_INPUTS };
 
-/* Indices of outputs alone, without a control variate. */
+/* Indices from outputs, without a control variate. */
 static struct pound_closed_results *plain(const double *y, int n_rows, int n_inputs, int order)
 {
 	static const double none[POUND_CLOSED_COLUMNS_MAX];
@@ -74,7 +74,7 @@ static void four_inputs_have_every_set_in_the_plain_design(void **state)
 		assert_int_equal(isnan(got->shapley[0].value), cases[c].n_inputs > 5);
 		free(got);
 	}
-	// five inputs in the plain design: the sets of two lack their pairs, so no Shapley effect
+	// five inputs in the plain design: the sets of two lack samples, so there are no Shapley effects
 	struct pound_closed_results *got = plain(y, 8, 5, POUND_ORDER_TOTAL);
 	assert_int_equal(got->sets.n_second, 0);
 	assert_true(isnan(got->shapley[0].value) && isfinite(got->first[0].value));
@@ -126,10 +126,10 @@ static void second_order_indices_and_shapley_effects_follow_from_the_closed_ones
 	for (int k = 0; k < got->sets.n_closed; k++)
 		closed[got->sets.closed[k].inputs] = got->sets.closed[k].estimate.value;
 	for (int j = 0; j < D; j++) {
-		// the same parts with weighted controls, so that both hold the exact ones
+		// the same variances with weighted controls, so both intervals contain the exact ones
 		check_near(got->first[j].value, closed[1 << j], got->first[j].high - got->first[j].low);
 		check_near(got->total[j].value, 1.0 - closed[15 ^ 1 << j], got->total[j].high - got->total[j].low);
-		// the mean over the 24 orders of the inputs of what j adds: over those before it
+		// the mean over the 24 orders of the inputs of what j adds to the inputs before it
 		for (int a = 0; a < D; a++)
 			for (int b = 0; b < D; b++)
 				for (int c = 0; c < D; c++) {
@@ -153,7 +153,7 @@ static void second_order_indices_and_shapley_effects_follow_from_the_closed_ones
 
 enum { SEEDS = 12 };
 
-/* Root mean square errors and coverages over designs; [0] second-order indices, [1] Shapley effects. */
+/* Root mean square errors and coverage over designs; [0] second-order indices, [1] Shapley effects. */
 static void errors_of(const struct function *f, int n_rows, int order, struct function_noise noise,
                       double *rms, double *coverage)
 {
@@ -178,7 +178,7 @@ static void errors_of(const struct function *f, int n_rows, int order, struct fu
 static void errors_at_six_thousand_runs_are_those_measured_for_the_formulas(void **state)
 {
 	(void)state;
-	// measured means over these five functions, with a control variate n = 1000, and contrasts alone n = 375
+	// measured means over these five functions, with a control variate n = 1000, and contrasts only n = 375
 	static const char *const names[] = {"ishigami", "g_a", "g_b", "cusp", "steps"};
 	double pair[2] = {0.0}, shapley[2] = {0.0};
 	for (int k = 0; k < 5; k++)

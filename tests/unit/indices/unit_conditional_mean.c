@@ -1,4 +1,5 @@
-/* unit_conditional_mean.c - the mean output given one input: straight lines exactly, known functions within measured errors. */
+/* unit_conditional_mean.c - the mean output given one input: linear functions exactly, known functions within
+ * measured errors. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -8,7 +9,7 @@
 
 enum { D = FUNCTION_INPUTS };
 
-/* Of the outputs themselves, or of what the polynomials of chaos_expansion.c leave of them. */
+/* From the outputs, or from the residuals of the polynomials of chaos_expansion.c. */
 static void curves_of(const struct function *f, const struct pound_design *design,
                       struct function_noise noise, bool trend, struct pound_curve curves[D])
 {
@@ -47,7 +48,7 @@ static void a_straight_line_is_met_but_for_what_the_other_inputs_scatter(void **
 	curves_of(&f, &(struct pound_design){.rows = 4000, .seed = 1}, noiseless, false, curves);
 	for (int k = 0; k < POUND_CURVE; k++) {
 		double u = pound_conditional_place(k);
-		// deviations of the others' sum: 0.14, 0.60, 0.58, 0.60; rows behind a place: over 0.06 of 8000
+		// standard deviations of the sum of the others: 0.14, 0.60, 0.58, 0.60; rows near a place: over 0.06 of 8000
 		check_near(curves[0].mean[k].value, 2.75 + 2.0 * u, 5 * 0.14 / sqrt(480));
 		check_near(curves[1].mean[k].value, 3.75, 5 * 0.60 / sqrt(480));
 		check_near(curves[2].mean[k].value, 4.0 - 0.5 * u, 5 * 0.58 / sqrt(480));
@@ -79,7 +80,7 @@ static void a_line_of_one_input_is_exact_and_so_is_its_band(void **state)
 	}
 }
 
-/* Mean of a function given one input, by Gauss' rule of 12 points in each half of the others' ranges. */
+/* Mean of a function given one input, by Gauss quadrature with 12 points in each half of the other inputs' ranges. */
 static double truth(const struct function *f, int input, double place)
 {
 	enum { POINTS = 12 };
@@ -100,7 +101,7 @@ static double truth(const struct function *f, int input, double place)
 	return sum;
 }
 
-/* The same of the function of steps, which no rule of points meets. */
+/* The same for the function of steps in closed form, as quadrature points miss the steps. */
 static double steps_truth(int input, double place)
 {
 	const double beyond[] = {fmin(fmax(2.0 * place - 0.6, 0.0), 1.0), 0.2 + 0.5 * place, 0.45, 0.45};
@@ -119,10 +120,10 @@ static void truth_fill(const struct function *f, double want[D][POUND_CURVE])
 enum { SEEDS = 8 };
 
 struct performance {
-	double error, coverage; /* root mean square in deviations of the output; of the bands */
+	double error, coverage; /* root mean square in standard deviations of the output; coverage of the bands */
 };
 
-/* Over seeds, inputs and places; the error is the mean of those of the inputs. */
+/* Over seeds, inputs and places; the error is the mean of the inputs' errors. */
 static struct performance performance_of(const struct function *f, struct pound_design design,
                                          struct function_noise noise, double want[D][POUND_CURVE])
 {
@@ -148,8 +149,8 @@ static struct performance performance_of(const struct function *f, struct pound_
 static void errors_of_six_thousand_runs_are_a_fraction_of_those_of_smoothing_alone(void **state)
 {
 	(void)state;
-	// with five signals of a noise that leaves a quarter of the variance in their mean; smoothing the outputs alone errs by
-	// 0.040, 0.043, 0.053, 0.046
+	// with five signals whose noise leaves a quarter of the variance in their mean; smoothing without polynomials has
+	// errors of 0.040, 0.043, 0.053, 0.046
 	static const struct {
 		const char *name;
 		double quiet, noisy, coverage;
@@ -226,7 +227,7 @@ static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **st
 		for (int k = 0; k < 3; k++) {
 			const struct pound_estimate *mean = &curves[1].mean[k];
 			check_near(pound_conditional_x(discrete, k), numbers[k], 0.0);
-			// the deviation of the other inputs is 0.6 at most, over some 125 rows of either matrix
+			// the other inputs have a standard deviation of 0.6 at most, over some 125 rows of each matrix
 			check_near(mean->value, want[k], 5 * 0.6 / sqrt(125));
 			covered += mean->low <= want[k] && want[k] <= mean->high;
 		}
@@ -235,7 +236,7 @@ static void a_discrete_input_has_one_exact_mean_for_each_of_its_values(void **st
 		free(scratch), free(u);
 		function_values_free(&values);
 	}
-	// of 120 bands 114 are to hold, give or take 2.4
+	// of 120 bands 114 hold on average, with a standard deviation of 2.4
 	assert_true(covered >= 105);
 }
 

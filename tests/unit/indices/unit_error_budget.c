@@ -1,5 +1,5 @@
-/* unit_error_budget.c - what the indices may be off by: differences of runs made twice, intervals against rows, and the error
- * that dominates; first on functions with known indices, then on runs of the engine. */
+/* unit_error_budget.c - error bounds of the indices: differences between repeated runs, intervals against rows, and
+ * the dominant error; first for functions with known indices, then for runs of the engine. */
 #include "engine/indices/error_budget.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -17,7 +17,7 @@ struct estimated {
 	struct pound_estimate index[POUND_N_INDICES][POUND_INPUTS_MAX];
 };
 
-/* All indices and their accuracy, of outputs over function_design(n_rows, seed). */
+/* All indices and their accuracy, from outputs over function_design(n_rows, seed). */
 static struct estimated *estimated_of(const struct pound_sample_values *values, struct pound_checks checks,
                                       uint64_t seed)
 {
@@ -46,12 +46,12 @@ static void differences_of_runs_come_out_relative_and_as_a_variance(void **state
 	struct pound_sample_values values = {
 	    .n_rows = 2, .n_inputs = 1, .n_signals = 2, .numerator = numerator, .denominator = denominator};
 	struct pound_check check[] = {
-	    {0, 0, {1, 1}, {1, 1}},     // alike
-	    {0, 1, {5, 5.5}, {1, 1}},   // 1/11 apart, e = 1/2
-	    {1, 0, {8, 4}, {1, 1}},     // 1/2 apart, e = -4
-	    {1, 2, {6, 12}, {1, 2}},    // the ratio is alike; e = 6 - 4 1 = 2
-	    {1, 1, {NAN, 1}, {NAN, 1}}, // failed once
-	    {1, 1, {1, 1}, {0, 0}},     // nothing moved
+	    {0, 0, {1, 1}, {1, 1}},     // equal
+	    {0, 1, {5, 5.5}, {1, 1}},   // relative difference 1/11, e = 1/2
+	    {1, 0, {8, 4}, {1, 1}},     // relative difference 1/2, e = -4
+	    {1, 2, {6, 12}, {1, 2}},    // the ratio is equal; e = 6 - 4 1 = 2
+	    {1, 1, {NAN, 1}, {NAN, 1}}, // failed in one run
+	    {1, 1, {1, 1}, {0, 0}},     // no response
 	};
 	struct estimated *e = estimated_of(&values, (struct pound_checks){6, check}, 1);
 	assert_int_equal(e->of.accuracy.runs_checked, 4);
@@ -83,7 +83,7 @@ static void runs_that_agree_move_no_index(void **state)
 	function_values_free(&values);
 }
 
-/* A standard normal number of a stream, near enough: twelve uniform ones. */
+/* A standard normal number of a stream, approximately: twelve uniform ones. */
 static double normal(uint64_t *stream)
 {
 	double sum = -6;
@@ -94,7 +94,8 @@ static double normal(uint64_t *stream)
 	return sum;
 }
 
-/* Noise on every output; every 20th run is checked by the output without it. */
+/* Adds noise to every output; every 20th run is checked against the output without noise.  Returns the number of
+ * indices that change by more than the stated bound. */
 static int moved_further(const struct function *f, int n_rows, double share, uint64_t seed)
 {
 	struct pound_sample_values clean =
@@ -134,7 +135,7 @@ static void indices_move_no_more_than_stated_when_noise_is_added(void **state)
 		int further = 0;
 		for (int seed = 0; seed < SEEDS; seed++)
 			further += moved_further(function_named("ishigami"), N, shares[k], 100 + (uint64_t)seed);
-		// twice the deviation is passed in 4.6 % of cases at most, as the parts' deviations are added
+		// twice the standard deviation is exceeded in at most 4.6 % of cases, as the deviations of the terms are added
 		assert_in_range(further, 0, (int)(0.046 * SEEDS * 2 * D));
 	}
 }
@@ -148,10 +149,10 @@ static void half_widths_fall_with_the_root_of_the_rows(void **state)
 	const struct pound_accuracy *accuracy = &e->of.accuracy;
 	assert_int_equal(accuracy->rows[0], 256);
 	assert_int_equal(accuracy->rows[3], 2048);
-	// half widths of 256 rows scatter by 5 % (more where outputs have heavy tails): the slope by some 0.05
+	// half widths of 256 rows scatter by 5 % (more if outputs have heavy tails), so the slope scatters by some 0.05
 	check_near(accuracy->slope, -0.5, 0.1);
 	check_near(accuracy->rows_to_halve / 2048, exp2(-1 / accuracy->slope), 1e-12);
-	// nothing was checked, and there is one signal only
+	// no runs were checked, and there is one signal only
 	assert_true(isnan(accuracy->errors[POUND_ERROR_INTEGRATION]));
 	assert_true(isnan(accuracy->errors[POUND_ERROR_EXCITATION]));
 	assert_int_equal(pound_accuracy_dominant(accuracy->errors), POUND_ERROR_SAMPLING);
@@ -164,7 +165,7 @@ static double half(struct pound_estimate estimate)
 	return 0.5 * (estimate.high - estimate.low);
 }
 
-/* Of rows and of groups of rows, in a design with neighbours and in a quasi-random one. */
+/* From rows and from groups of rows, in a design with neighbors and in a quasi-random one. */
 static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 {
 	(void)state;
@@ -193,7 +194,7 @@ static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 		pound_local_regression_first_rows(&rows, N / 2, rest, from_half);
 		for (int j = 0; j < D; j++) {
 			check_near(from_all[j], half(first[j]), 1e-15);
-			// half the rows have intervals wider by sqrt(2), from 16 groups give or take a third
+			// intervals from half the rows are wider by sqrt(2), within a third as there are 16 groups
 			assert_true(from_half[j] > from_all[j] && from_half[j] < 2 * from_all[j]);
 		}
 		free(u), free(scratch);
@@ -201,8 +202,8 @@ static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 	}
 }
 
-/* Noise that is taken away from the indices is still in their intervals: with almost nothing else it is the largest
- * error, and where the excitation is not random it is none. */
+/* Noise that is removed from the indices is still in their intervals: if it is nearly all of the variance, it is the
+ * dominant error; if it is negligible, it is not. */
 static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 {
 	(void)state;
@@ -219,7 +220,8 @@ static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 	}
 }
 
-/* An index that is exactly 1 has an interval of no width, and the noise of signals that its rows share adds nothing to it. */
+/* An index that is exactly 1 has an interval of zero width, and the noise of signals shared by the samples adds
+ * nothing to it. */
 static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 {
 	(void)state;
@@ -227,7 +229,7 @@ static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 	double numerator[N * 3 * SIGNALS], one[N * 3 * SIGNALS], u[N * 2];
 	for (int i = 0; i < N; i++) {
 		u[2 * i] = (i + 0.5) / N, u[2 * i + 1] = (7 * i % N + 0.5) / N;
-		// one input: its sample from A and B is B
+		// one input: its sample of A with the column from B is B
 		for (int p = 0; p < 3; p++)
 			for (int r = 0; r < SIGNALS; r++) {
 				const double noise = r ? 1 : -1;
@@ -310,7 +312,7 @@ static const struct pound_result *reduced(struct pound_run *run)
 static void checked_runs_agree_and_are_counted_apart(void **state)
 {
 	(void)state;
-	// 50 items of 4 runs in each of 2 cells, so that 8 runs are every 25th item
+	// 2 cells with 50 items of 4 runs each: 8 checked runs are every 25th item
 	struct pound_study *study = study_documents_study(study_documents_sensitivity);
 	struct pound_run *run = run_of(study);
 	const struct pound_result *result = reduced(run);
@@ -318,9 +320,9 @@ static void checked_runs_agree_and_are_counted_apart(void **state)
 		for (int o = 0; o < 2; o++) {
 			const struct pound_accuracy *accuracy = &result->cells[c].indices[o].accuracy;
 			assert_int_equal(accuracy->runs_checked, 8);
-			// measured 1e-13: the few contacts of a gap multiply rounding little
+			// measured 1e-13: a gap leads to few contacts, which amplify rounding little
 			assert_true(accuracy->difference_largest < 1e-9);
-			// and it is not the same run
+			// and the runs differ
 			assert_true(accuracy->difference_largest > 0);
 		}
 	assert_int_equal(result->work.pounding_runs.asked, 400);
@@ -349,7 +351,7 @@ static void restored_blocks_bring_their_checks(void **state)
 	study_free(study);
 }
 
-/* The check is exact whatever the solver, so it shows the error of a coarse one. */
+/* The check run is always exact, so its difference shows the error of a coarse solver. */
 static void a_coarse_solver_shows_its_error(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* unit_failed_rows.c - what rows left out may change of the indices, against rows that are really put in. */
+/* unit_failed_rows.c - possible changes of the indices by rows left out, against results with such rows added. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -8,7 +8,7 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2, N = 60, SEED = 3 };
 
-/* Raw indices and bounds, of values some of whose rows may be missing. */
+/* Raw indices and bounds from values, some of whose rows may be missing. */
 struct bounded {
 	struct pound_indices of;
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX];
@@ -28,7 +28,7 @@ static struct bounded *bounded_of(const struct pound_sample_values *values, int 
 	return b;
 }
 
-/* The first n rows, and `copies` more of row r behind them. */
+/* The first n rows, followed by `copies` copies of row r. */
 static struct pound_sample_values with_copies(const struct pound_sample_values *values, int r, int copies)
 {
 	struct pound_sample_values more = *values;
@@ -75,7 +75,7 @@ static void the_bound_is_the_largest_change_that_copies_of_a_row_make(void **sta
 static void rows_that_fail_move_no_index_beyond_the_bound(void **state)
 {
 	(void)state;
-	// the first rows fail, and with one more each time some that are extreme
+	// the first rows fail, up to 20 of them, some with extreme values
 	for (int failed = 1; failed <= 20; failed++) {
 		struct pound_sample_values values =
 		    function_values(function_named("cusp"), N, SEED, (struct function_noise){1, 0, true});

@@ -7,7 +7,7 @@
 
 enum { N = 2000, D = 3 };
 
-/* Samples with all that an estimate takes. */
+/* Samples, with the arrays that an estimate needs. */
 struct samples {
 	struct pound_given given;
 	struct pound_input inputs[POUND_INPUTS_MAX];
@@ -18,7 +18,7 @@ struct samples {
 
 static uint64_t state_of_draws;
 
-/* Uniform draws in (0, 1): a linear congruential sequence of 64 bits, its 53 highest (Knuth, MMIX). */
+/* Uniform draws in (0, 1): the 53 highest bits of a linear congruential sequence of 64 bits (Knuth, MMIX). */
 static double draw(void)
 {
 	state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
@@ -81,8 +81,8 @@ static void check_holds(struct pound_estimate e, double value, const char *what,
 	}
 }
 
-/* y = 1 + 2 u1 + 3 (u2 - 1/2) (u3 - 1/2) is a polynomial: all of it is explained, and errors are those of the sample's own
- * moments, which the intervals hold. */
+/* y = 1 + 2 u1 + 3 (u2 - 1/2) (u3 - 1/2) is a polynomial and explained completely, so errors come from the sample's
+ * own moments, which the intervals include. */
 static void a_polynomial_has_the_indices_of_its_coefficients(void **state)
 {
 	(void)state;
@@ -98,7 +98,7 @@ static void a_polynomial_has_the_indices_of_its_coefficients(void **state)
 	estimate(&s, &indices);
 	assert_true(indices.explained > 0.999);
 	check_near(indices.variance, v, 4 * v * sqrt(2.0 / N));
-	// the scatter of the share of two sample variances
+	// standard deviation of the fraction of two sample variances
 	const double error = 4 * (v1 / v) * (v23 / v) * sqrt(2 * 2.0 / N);
 	check_near(indices.first[0].value, v1 / v, error);
 	check_near(indices.total[1].value, v23 / v, error);
@@ -134,7 +134,7 @@ static void indices_of_ishigami_are_in_their_intervals(void **state)
 		}
 		samples_free(&s);
 	}
-	// 0.90 of the intervals at least hold; three standard errors of the count of 240, taken as independent of the seed
+	// at least 0.90 of the intervals hold, less 2.4 binomial standard deviations of their number
 	check_report("%d of %d intervals missed", missed, SEEDS * 2 * D);
 	assert_true(missed <= 0.10 * SEEDS * 2 * D + 3 * sqrt(0.09 * SEEDS) * 2);
 }
@@ -145,7 +145,7 @@ static void what_no_polynomial_explains_has_no_total_indices(void **state)
 	struct samples s;
 	struct pound_given_indices indices;
 	samples_draw(&s, N, D, 3);
-	// parity of three inputs: first-order indices 0, none of it within reach of few degrees
+	// parity of three inputs: first-order indices are 0, and no polynomial of low degree explains any of it
 	for (int i = 0; i < N; i++) {
 		s.y[i] = 1;
 		for (int j = 0; j < D; j++)
@@ -169,7 +169,7 @@ static void an_input_of_few_values_is_discrete(void **state)
 	struct samples s;
 	struct pound_given_indices indices;
 	samples_draw(&s, N, D, 11);
-	// three values of equal probability in the first input: y = its value plus the second, (2/3) / (2/3 + 1/12)
+	// the first input has three values of equal probability: y = value + second input, (2/3) / (2/3 + 1/12)
 	for (int i = 0; i < N; i++) {
 		double *x = s.x + (size_t)i * D;
 		x[0] = floor(3 * x[0]);
@@ -224,7 +224,7 @@ static void independent_samples_pass_and_others_are_named(void **state)
 	samples_check(&s);
 	assert_true(says(s.checks.notes, POUND_GIVEN_DEPENDENT));
 	samples_free(&s);
-	// a lattice: of equal distances in one input are equal ones in the other
+	// a lattice: equal distances in one input are equal distances in the other
 	samples_draw(&s, N, 2, 8);
 	for (int i = 0; i < N; i++) {
 		s.x[(size_t)i * 2] = (i + 0.5) / N;
@@ -267,7 +267,7 @@ static void a_shift_and_a_scale_change_nothing(void **state)
 		s.x[i] = exp(s.x[i]);
 	samples_check(&s);
 	estimate(&s, &moved);
-	// 1e6 / 3 sd of the output, each rounded to DBL_EPSILON / 2 of 1e6
+	// 1e6 / 3 standard deviations of the output, each value rounded to DBL_EPSILON / 2 of 1e6
 	for (int j = 0; j < D; j++) {
 		check_near(moved.first[j].value, indices.first[j].value, 1e-9);
 		check_near(moved.total[j].value, indices.total[j].value, 1e-9);

@@ -1,5 +1,5 @@
-/* unit_index_columns.c - every column of indices of one output: which function it comes from, what stands in for it, what is
- * said about it; from sample values, and through a whole study into its result. */
+/* unit_index_columns.c - every index column of one output: its estimator, its substitute, and its notes; from sample
+ * values, and through a whole study into its result. */
 #include "engine/indices/indices.h"
 #include "schema/json/json_pointer.h"
 #include "schema/result/result_json.h"
@@ -156,7 +156,7 @@ static void fresh_signals_hide_the_indices_of_the_excitation_that_need_shared_on
 	struct indices *got = function_indices("cusp", 100, (struct function_noise){5, 1.0, false}, true);
 	assert_true(isnan(got->estimates[POUND_S2_EXCITATION][0].value));
 	assert_true(isnan(got->of.share[POUND_SHARE_FIRST_ONE].high));
-	// half of the variance of single runs, known to some 10 % of it by 100 rows
+	// half of the variance of single runs, known to some 10 % with 100 rows
 	check_near(got->of.share[POUND_SHARE_TOTAL_ONE].value, 0.5, 4 * 0.05);
 	assert_int_equal(got->of.notes, 1 << POUND_NOTE_FRESH_SIGNALS);
 	free(got);
@@ -184,7 +184,7 @@ static void with_few_rows_the_corrected_indices_stand_in(void **state)
 static void what_is_lost_in_noise_is_undefined_and_only_the_raw_indices_are_left(void **state)
 {
 	(void)state;
-	// the outputs differ by their signals alone, and by chance less than those do
+	// the outputs differ almost only by their signals
 	enum { N = 40 };
 	double numerator[N * SAMPLES * 2], one[N * SAMPLES * 2];
 	for (int i = 0; i < N; i++)
@@ -215,7 +215,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 	for (int k = 0; k < 3; k++) {
 		for (int i = 0; i < N * SAMPLES * 3; i++) {
 			denominator[i] = 0.1 + 0.7 * (i % 17);
-			numerator[i] = i < kept[k] * SAMPLES * 3 ? 1.1 * denominator[i] : NAN; // 1.1 but for rounding
+			numerator[i] = i < kept[k] * SAMPLES * 3 ? 1.1 * denominator[i] : NAN; // 1.1 except for rounding
 		}
 		struct pound_sample_values values = {
 		    .n_rows = N, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
@@ -232,8 +232,8 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 	free(u);
 }
 
-/* Of one sample that is not as the others the interval of a total is a point, which the note takes back; of ten in as many
- * rows it is none. */
+/* If one sample differs from all others, the interval of a total has zero width, and a note says not to rely on it;
+ * with ten such rows there is no note. */
 static void an_output_that_few_rows_decide_is_noted(void **state)
 {
 	(void)state;
@@ -254,8 +254,8 @@ static void an_output_that_few_rows_decide_is_noted(void **state)
 	free(u);
 }
 
-/* A product of Pareto variables, of which one row in hundred has nearly all of the variance: where the polynomial misses it, its
- * totals are far from [0, 1]; those of pick-freeze never are below 0, and are reported there. */
+/* A product of Pareto variables, where one row in a hundred has nearly all of the variance: if the polynomial misses
+ * it, its totals are far from [0, 1]; pick-freeze totals are never below 0, and are reported there. */
 static void a_total_that_few_rows_decide_is_a_share(void **state)
 {
 	(void)state;
@@ -288,7 +288,7 @@ static void a_total_that_few_rows_decide_is_a_share(void **state)
 
 /* ---- whole studies ---- */
 
-/* The result of a study as a server with so many workers would reduce it, workers in turn. */
+/* The result of a study as a server with n_workers would reduce it, with alternating workers. */
 static char *result_of(const struct pound_study *study, int n_workers, struct pound_run **run)
 {
 	static const struct timing timing = {0, 0, 1};
@@ -327,7 +327,7 @@ static void check_column(const struct reading *r, const char *at, enum pound_ind
 		const double numbers[] = {e->value, e->low, e->high};
 		for (int k = 0; k < 3; k++) {
 			double got = reading_number(r, "%s/inputs/%d/%s%s", at, j, name, ends[k]);
-			// a ratio of sums of five, rounded once more
+			// a ratio of sums of five numbers, rounded once more
 			check_near(got, numbers[k], 1e-9);
 		}
 	}
@@ -413,7 +413,7 @@ static void an_input_of_one_value_explains_exactly_nothing(void **state)
 		inputs[3].distribution.type++;
 	inputs[3].distribution.n_values = 1;
 	inputs[3].distribution.values = one_value;
-	// the fourth input of this function has no effect; with signals of their own its samples differ all the same
+	// the fourth input of this function has no effect; with independent signals its samples differ nevertheless
 	for (int common = 0; common < 2; common++)
 		for (int n = 20; n <= 200; n += 180) {
 			struct pound_sample_values values =
@@ -441,7 +441,7 @@ static void an_input_of_one_value_explains_exactly_nothing(void **state)
 		}
 }
 
-/* Sobol' points in 8 scrambles, one of which leaves no variance beside the noise of two signals. */
+/* Sobol' points in 8 scrambles; in one of them no variance remains besides the noise of two signals. */
 static void an_index_without_an_interval_is_noted(void **state)
 {
 	(void)state;
@@ -473,9 +473,9 @@ static void an_index_without_an_interval_is_noted(void **state)
 	study_free(read);
 }
 
-/* Noise of 20 times the variance, common to the samples of a row, is no effect of an input that has none: its pick-freeze estimate is
- * exactly 0, regression over few rows is not.  With 40 designs an interval of 95 % is above 0 in one of them on average, and in
- * more than 4 with a probability of 0.003. */
+/* Noise of 20 times the variance, shared by the samples of a row, is no effect of an input without one: its
+ * pick-freeze estimate is exactly 0, regression over few rows is not.  With 40 designs an interval of 95 % is above 0
+ * in one of them on average, and in more than 4 with a probability of 0.003. */
 static void noise_is_no_effect_of_an_input_without_one(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* unit_input_ratios.c - indices of ratios of inputs that depend on each other: a case known exactly, a function known by
+/* unit_input_ratios.c - indices of dependent ratios of inputs: a case with exact values, a function with values by
  * quadrature, identities. */
 #include "engine/design/design.h"
 #include "engine/indices/indices.h"
@@ -67,7 +67,7 @@ static struct pound_ratio_indices indices_of(output *y, int rows, int seed)
 	return result;
 }
 
-/* A cusp at f_2 = f_1, in the ratios alone. */
+/* A cusp at f_2 = f_1, a function of the ratios only. */
 static double cusp(const double *x)
 {
 	double a = x[1] / x[0], b = x[2] / x[0], r = x[3], s = (a - 0.75) / 0.6;
@@ -95,13 +95,13 @@ static void indices_of_dependent_ratios_are_those_of_quadrature(void **state)
 			}
 		}
 	}
-	// measured for this way of estimating them over 12 designs: 0.0029
+	// measured over 12 designs with this estimator: 0.0029
 	for (int kind = 0; kind < 3; kind++)
 		assert_true(sqrt(square[kind]) <= 0.0038);
 	assert_true(covered >= 0.75 * 12 * SEEDS);
 }
 
-/* ln a = ln f_e - ln f_1, so that everything of a sum of logarithms is known. */
+/* ln a = ln f_e - ln f_1, so all indices of a sum of logarithms are known. */
 static double logarithms(const double *x)
 {
 	return log(x[1] / x[0]) + log(x[2] / x[0]);
@@ -110,12 +110,12 @@ static double logarithms(const double *x)
 static void a_sum_of_logarithms_shares_what_its_ratios_have_in_common(void **state)
 {
 	(void)state;
-	// with V the variance of each logarithm: Var y = 6 V;  E[y | a] = a + E[b | a].  By symmetry both effects are a half.
+	// with V the variance of each logarithm: Var y = 6 V;  E[y | a] = a + E[b | a].  By symmetry both effects are 1/2.
 	struct pound_ratio_indices got = indices_of(logarithms, 500, 3);
 	for (int k = 0; k < 2; k++) {
 		assert_true(got.shapley[k].low <= 0.5 && 0.5 <= got.shapley[k].high);
 		check_near(got.shapley[k].value, 0.5, 0.01);
-		// each explains more by itself than it adds to the other: they share f_1
+		// each alone explains more than it adds to the other: they share f_1
 		assert_true(got.first[k].low > got.total[k].high);
 		check_near(got.shapley[2 + k].value, 0.0, 1e-3);
 	}
@@ -133,7 +133,7 @@ static void shapley_effects_add_up_to_one(void **state)
 	check_near(sum, 1.0, 1e-12);
 }
 
-/* Too rough in f_1 for any polynomial to foretell. */
+/* Too rough in f_1 for any polynomial. */
 static double noise(const double *x)
 {
 	return sin(1e5 * x[0]) + 0.1 * x[2] / x[0];
@@ -146,9 +146,9 @@ static void what_ratios_explain_has_an_interval_or_is_not_estimated(void **state
 		for (int seed = 0; seed < 3; seed++) {
 			const struct pound_estimate whole = indices_of(cusp, rows, seed).explained,
 			                            little = indices_of(noise, rows, seed).explained;
-			// of the ratios alone but for a cusp: measured 0.87 to 0.99, and never above 1
+			// a function of the ratios only, with a cusp: measured 0.87 to 0.99, and never above 1
 			assert_true(whole.value > 0.8 && whole.low < whole.value && whole.high < 1.05);
-			// of this 0.03 in all, less what 210 terms err by: never said to be more
+			// the ratios explain 0.03 of this function, less the error of 210 terms: no larger value may be reported
 			assert_true(isnan(little.value) || (little.low < 0.03 && little.value < 0.2));
 		}
 }

@@ -23,7 +23,7 @@ static void student_quantiles_are_those_of_the_tables(void **state)
 	check_near(pound_jackknife_student(1 << 15), POUND_NORMAL_95, 0);
 }
 
-/* Rows with two numbers each; their means and the ratio of these. */
+/* Rows of two numbers; their means and the ratio of the means. */
 struct pairs {
 	const double (*row)[2];
 };
@@ -53,7 +53,7 @@ static void estimate(const double (*row)[2], int n_rows, struct pound_grouping g
 	pound_jackknife_estimates(&statistic, &scatter, n_rows, scratch, estimates);
 }
 
-// four groups of two rows, side by side
+// four groups of two rows, interleaved or consecutive
 static const double rows[8][2] = {{1, 2}, {4, 3}, {2, 2}, {9, 5}, {3, 4}, {6, 3}, {2, 6}, {5, 3}};
 
 static void the_interval_of_a_mean_is_students(void **state)
@@ -71,19 +71,19 @@ static void the_interval_of_a_mean_is_students(void **state)
 	check_near(e[0].low, 4 - half, 1e-11);
 	check_near(e[0].high, 4 + half, 1e-11);
 	check_near(pound_jackknife_half_width(value, 8, &interleaved, sums), half, 1e-11);
-	// in runs of two: means 2.5, 5.5, 4.5, 3.5, variance 5/3
+	// consecutive rows: means 2.5, 5.5, 4.5, 3.5, variance 5/3
 	const struct pound_scatter runs = {{4, 2}, NULL};
 	const double half_runs = 3.182446305284263 * sqrt(5. / 12);
 	estimate(rows, 8, runs.grouping, NULL, e);
 	check_near(e[0].high, 4 + half_runs, 1e-11);
 	check_near(pound_jackknife_half_width(value, 8, &runs, sums), half_runs, 1e-11);
-	// rows alone: variance 48/7
+	// without groups: variance 48/7
 	const struct pound_scatter alone = {{0, 1}, NULL};
 	check_near(pound_jackknife_half_width(value, 8, &alone, sums), POUND_NORMAL_95 * sqrt(48. / 7 / 8),
 	           1e-14);
 }
 
-/* The ratio's interval from pseudo-values worked out one by one. */
+/* The interval of a ratio from its pseudo-values, computed one by one. */
 static void a_ratio_has_the_interval_of_its_pseudo_values(void **state)
 {
 	(void)state;
@@ -100,14 +100,14 @@ static void a_ratio_has_the_interval_of_its_pseudo_values(void **state)
 	check_near(e[1].value, theta, 1e-15);
 	check_near(e[1].low, theta - half, 1e-11);
 	check_near(e[1].high, theta + half, 1e-11);
-	// golden: the same in another language
+	// golden value by a program in another language
 	check_near(half, 1.110587242022316, 1e-14);
 }
 
 static void rows_left_out_stay_in_their_groups(void **state)
 {
 	(void)state;
-	// rows 2, 3 and 6 of the design are missing: groups 0, 1, 3 of four with 2, 2, 1 rows; group 2 is empty
+	// rows 2, 3 and 6 of the design are missing: groups 0, 1, 3 of four have 2, 2, 1 rows; group 2 is empty
 	static const double kept[5][2] = {{1, 2}, {4, 3}, {3, 4}, {6, 3}, {5, 3}};
 	static const int64_t number[5] = {0, 1, 4, 5, 7};
 	struct pound_estimate e[2], want[2];
@@ -121,7 +121,7 @@ static void rows_left_out_stay_in_their_groups(void **state)
 	const double half = 4.302652729749464 * sqrt(squares / 2 / 3);
 	check_near(e[0].value, theta, 1e-15);
 	check_near(e[0].high - e[0].value, half, 1e-11);
-	// one group alone has no interval
+	// a single group has no interval
 	estimate(kept, 2, (struct pound_grouping){4, 5}, NULL, want);
 	check_near(want[0].value, 2.5, 1e-15);
 	assert_true(isnan(want[0].low) && isnan(want[0].high));
@@ -144,7 +144,7 @@ static void rows_in_groups_are_never_resampled(void **state)
 	free(scratch);
 }
 
-/* Of n rows with k ones the kurtosis is ((1 - p)^3 + p^3) / (p (1 - p)), p = k / n. */
+/* For n rows with k ones the kurtosis is ((1 - p)^3 + p^3) / (p (1 - p)), p = k / n. */
 static void few_rows_are_behind_a_rare_event(void **state)
 {
 	(void)state;

@@ -46,7 +46,7 @@ static void a_straight_line_is_predicted_exactly(void **state)
 	}
 }
 
-/* First-order indices of the rows of sample values over their design. */
+/* First-order indices from the rows of sample values over their design. */
 static void first_of(const struct pound_sample_values *values, const double *x, bool corrected,
                      struct pound_estimate *first)
 {
@@ -67,7 +67,7 @@ static void rows_left_out_do_not_shift_the_inputs_of_the_others(void **state)
 	    function_values(function_named("cusp"), N, 5, (struct function_noise){.n_signals = 1});
 	double *x = function_design(N, 5), *y = (double *)values.numerator;
 	struct pound_estimate want[D], got[D];
-	// what is left after the first hundred rows fail is what is left after cutting them off
+	// failed rows give the same result as rows that are cut off
 	struct pound_sample_values cut = {.n_rows = N - 100,
 	                                  .n_inputs = D,
 	                                  .n_signals = 1,
@@ -169,7 +169,7 @@ static void errors_over_designs_are_a_fraction_of_those_of_pick_freeze(void **st
 		    performance_of(function_named(measured[k].name), (struct function_noise){1, 0.0, true});
 		assert_true(p.rms <= 1.3 * measured[k].rms);
 		assert_true(p.bias <= 0.006);
-		// conservative: the influence function ignores that a Latin hypercube scatters less
+		// conservative: the influence function ignores that a Latin hypercube has less scatter
 		assert_true(p.coverage >= 0.95);
 	}
 }
@@ -188,7 +188,7 @@ static void a_jump_within_the_range_leaves_no_bias_and_the_interval_holds(void *
 	                           .y = jumps,
 	                           .variance = variance,
 	                           .index = {0.25 / variance, 1.0 / 12.0 / variance, 0.0, 0.0225 / variance}};
-	// one reach alone: a bias of 0.016, and of the intervals of the first input a third held
+	// one reach alone: a bias of 0.016, and a coverage of one third for the first input
 	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
 	assert_true(p.bias <= 0.004);
 	assert_true(p.coverage >= 0.95);
@@ -206,7 +206,7 @@ static void the_error_of_neighbours_is_in_the_interval(void **state)
 	const double variance = 1.0 / 2.0 + 1.0 / 12.0;
 	const struct function f = {
 	    .name = "waves", .y = waves, .variance = variance, .index = {0.5 / variance, 1.0 / 12.0 / variance}};
-	// a wave of 6 of the wider reaches: extrapolation goes too far by some hundredths
+	// a wave of 6 of the wider reaches: extrapolation overshoots by some hundredths
 	struct performance p = performance_of(&f, (struct function_noise){1, 0.0, true});
 	assert_true(p.bias > 0.02);
 	assert_true(p.coverage >= 0.95);
@@ -240,7 +240,7 @@ static void means_at_the_values_of_a_discrete_input_are_its_index(void **state)
 	double *x = function_design(N, 5);
 	struct pound_estimate first[D];
 	first_of(&values, x, false, first);
-	// a hypercube has the levels in proportion; what is left is the variance of u2 in the levels, 1/12 over 3000 rows
+	// a hypercube has the levels in proportion; what remains is the variance of u2 within the levels, 1/12 over 3000 rows
 	check_near(first[0].value, 1.24 / variance, 2e-3);
 	assert_true(first[0].low <= 1.24 / variance && 1.24 / variance <= first[0].high);
 	check_near(first[1].value, 1.0 / 12.0 / variance, 0.03);

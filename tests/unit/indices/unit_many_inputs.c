@@ -1,6 +1,6 @@
-/* unit_many_inputs.c - as many inputs as a study may have, of a function whose indices are known.
+/* unit_many_inputs.c - the largest number of inputs that a study may have, for a function with known indices.
  *
- * Of a product of independent factors with mean 1 and variances v_j a set u explains prod_u (1 + v_j) - 1. */
+ * In a product of independent factors with mean 1 and variances v_j, a set u explains prod_u (1 + v_j) - 1. */
 #include "tests/support/check.h"
 
 #include "engine/pound.h"
@@ -20,7 +20,7 @@ static double weight(int j)
 
 static double factor_variance(int j)
 {
-	// the last input matters, too: its bit is the sign of an int
+	// the last input matters, too: its bit is the sign bit of an int
 	const double a = j == D - 1 ? 1 : weight(j);
 	return isinf(a) ? 0 : 1 / (3 * (1 + a) * (1 + a));
 }

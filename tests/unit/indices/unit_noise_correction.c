@@ -1,4 +1,4 @@
-/* unit_noise_correction.c - the correction for few signals: golden values, exact zeros, and the bias it takes away. */
+/* unit_noise_correction.c - the correction for few signals: golden values, exact zeros, and the bias that it removes. */
 #include "engine/indices/indices.h"
 #include "tests/support/check.h"
 #include "tests/support/functions.h"
@@ -94,7 +94,7 @@ static void raw_and_corrected_agree_without_noise(void **state)
 	struct pound_rows rows = rows_of(&values);
 	struct pound_pick_freeze got = pick_freeze(&rows, 1);
 	for (int j = 0; j < D; j++) {
-		// the means they are centred by differ by the sampling error of a mean, its square enters
+		// the centering means differ by the sampling error of a mean, whose square enters
 		check_near(got.first[j].value, got.first_raw[j].value, 1.0 / 300.0);
 		check_near(got.total[j].value, got.total_raw[j].value, 1e-14);
 		check_near(got.with_signal[j].value, 0.0, 1e-14);
@@ -121,7 +121,7 @@ static void an_input_without_effect_keeps_a_total_of_zero_under_common_signals(v
 
 enum { SEEDS = 100, N = 1000 };
 
-/* Errors of the indices of one kind over SEEDS designs: first-order, then total. */
+/* Errors of one kind of indices over SEEDS designs: first-order, then total. */
 struct errors {
 	double bias[2 * D], square[2 * D];
 	int covered;
@@ -139,7 +139,7 @@ static void errors_add(struct errors *e, const struct function *f, const struct 
 	}
 }
 
-/* Noise of the same variance as the mean response, five signals: the case of which the bias is known. */
+/* Noise with the variance of the mean response, five signals: the bias is known. */
 static void check_noise(bool common, const double *raw_bias, double raw_spread, double first_rms,
                         double total_rms)
 {
@@ -160,7 +160,7 @@ static void check_noise(bool common, const double *raw_bias, double raw_spread, 
 	}
 	double first = 0.0, total = 0.0;
 	for (int k = 0; k < 2 * D; k++) {
-		// a mean of 100 designs is good to a tenth of an RMSE of some 0.03
+		// a mean of 100 designs has a standard error of a tenth of the RMSE, which is some 0.03
 		check_near(corrected.bias[k], 0.0, 0.010);
 		check_near(raw.bias[k], raw_bias[k], raw_spread);
 		*(k < D ? &first : &total) += corrected.square[k] / D;
@@ -209,7 +209,7 @@ an_input_without_effect_has_a_raw_total_of_a_sixth_under_fresh_signals_and_none_
 		free(rows.y);
 		function_values_free(&values);
 	}
-	// T -> (T + nu) / (1 + nu) with nu = 1/5; the deviation of one is 0.0097: four of the mean
+	// T -> (T + nu) / (1 + nu) with nu = 1/5; the standard deviation of one is 0.0097: four of the mean
 	check_near(raw, 1.0 / 6.0, 0.009);
 	check_near(corrected, 0.0, 0.009);
 }

@@ -14,7 +14,7 @@ static const struct pound_estimator *estimator_named(const char *name)
 	return pound_estimator_row(row);
 }
 
-/* Indices from the outputs of n rows, centred by the mean of A and B; value is first, total  (2 x d). */
+/* Indices from the outputs of n rows, centered by the mean of A and B; value is first-order, then total  (2 x d). */
 static void indices_of(const struct pound_estimator *e, const double *y, int n, int d, double *value)
 {
 	const int n_samples = pound_order_samples(e->order, d);
@@ -61,7 +61,7 @@ static void every_estimator_gives_its_golden_values(void **state)
 static void estimators_without_golden_values_are_their_formulas(void **state)
 {
 	(void)state;
-	// the formulas as they are printed
+	// the formulas as published
 	double value[4], v = 0.0, mu = 34.3 / 12.0, ab = 0.0, bc = 0.0, aa = 0.0, ac = 0.0, change = 0.0;
 	for (int i = 0; i < 6; i++) {
 		double a = golden[i][0], b = golden[i][1], c = golden[i][2];
@@ -78,8 +78,8 @@ static void estimators_without_golden_values_are_their_formulas(void **state)
 	check_near(value[2], 1.0 - ac / v, 1e-12);
 }
 
-/* The golden values of the formula of Azzini and Rosati, from means of products: with two inputs the samples of B with a
- * column from A are there already, so its moments are written down as the table has them. */
+/* The golden values of the formula of Azzini and Rosati, from means of products: with two inputs, samples of B with a
+ * column from A equal existing samples, so the moments are computed from the table. */
 static void azzini_rosati_gives_its_golden_values_from_four_samples(void **state)
 {
 	(void)state;
@@ -87,7 +87,7 @@ static void azzini_rosati_gives_its_golden_values_from_four_samples(void **state
 	static const double y[6][6] = {{3.3, 3.13, 3.25, 3.65, 3.0, 4.29},   {1.96, 2.68, 2.88, 2.3, 2.14, 2.12},
 	                               {3.75, 2.98, 3.6, 3.27, 3.63, 3.11},  {3.94, 2.15, 2.62, 2.7, 3.23, 2.64},
 	                               {1.05, 3.88, 2.65, 3.08, 2.67, 2.77}, {1.7, 3.78, 2.26, 2.66, 2.96, 3.3}};
-	// three inputs have samples of their own; the third is a copy of the first
+	// with three inputs all samples differ; the third input is a copy of the first
 	double rows[6][8], value[6];
 	for (int i = 0; i < 6; i++) {
 		const double *k = y[i];
@@ -108,7 +108,7 @@ static void azzini_rosati_gives_its_golden_values_from_four_samples(void **state
 static void the_only_input_with_an_effect_has_indices_of_one(void **state)
 {
 	(void)state;
-	// the output depends on the second of three inputs: A or B decide it alone
+	// the output depends on the second of three inputs only
 	double y[40 * 8], value[6];
 	for (int i = 0; i < 40; i++)
 		for (int p = 0; p < 8; p++)
@@ -133,10 +133,10 @@ static void an_input_without_effect_has_a_total_of_exactly_zero(void **state)
 	(void)state;
 	for (int row = 0; pound_estimator_row(row); row++) {
 		const struct pound_estimator *e = pound_estimator_row(row);
-		double *y = outputs_of(function_named("ishigami"), 100, 3, e->order); // its fourth input does nothing
+		double *y = outputs_of(function_named("ishigami"), 100, 3, e->order); // fourth input: no effect
 		double value[8];
 		indices_of(e, y, 100, 4, value);
-		// the squared mean in place of a product of means leaves their sampling error, the reason not to use it
+		// the squared mean in place of a product of means leaves its sampling error, the reason not to use it
 		assert_int_equal(value[7] == 0.0, strcmp(e->name, "saltelli_2002") != 0);
 		if (row == 0 || e->order == POUND_ORDER_SECOND)
 			assert_true(value[3] == 0.0);
@@ -186,7 +186,7 @@ static void relabelling_the_inputs_relabels_the_indices(void **state)
 static void noise_is_taken_off_every_product(void **state)
 {
 	(void)state;
-	// outputs and their noise multiplied by five: what is left is twenty times the products without noise
+	// outputs and their noise times five: the corrected products are twenty times the products without noise
 	enum { N = 50, D = 4 };
 	for (int row = 0; pound_estimator_row(row); row++) {
 		const struct pound_estimator *e = pound_estimator_row(row);
@@ -202,7 +202,7 @@ static void noise_is_taken_off_every_product(void **state)
 		e->moments(&(struct pound_outputs){D, n, y, NULL}, plain);
 		e->moments(&(struct pound_outputs){D, n, scaled, noise}, corrected);
 		for (int k = 0; k < e->n_moments(D); k++) {
-			double want = fabs(corrected[k] - 5.0 * plain[k]) < 1e-12 ? 5.0 : 20.0; // a mean or a product
+			double want = fabs(corrected[k] - 5.0 * plain[k]) < 1e-12 ? 5.0 : 20.0; // a mean, or a product
 			check_near(corrected[k], want * plain[k], 1e-12);
 		}
 		free(y);
@@ -265,11 +265,12 @@ static void errors_over_designs_are_those_measured_for_the_formulas(void **state
 		for (int k = 0; k < 8; k++) {
 			const double *rms = k < 4 ? s10 : j, *bias = k < 4 ? s10_bias : j_bias;
 			if (f->error[k] > 0.0) {
-				// an RMSE of 100 designs is good to 7 %: three and a half of that; a mean to a tenth of the RMSE
+				// an RMSE over 100 designs has a standard error of 7 %: three and a half of these; a mean to a tenth
+				// of the RMSE
 				assert_true(rms[k] <= 1.25 * f->error[k]);
 				check_near(bias[k], 0.0, 0.35 * f->error[k]);
 			}
-			// the variance over all samples makes the totals no worse
+			// the variance over all samples does not increase the errors of the totals
 			if (k >= 4)
 				assert_true(s10[k] <= 1.05 * j[k]);
 		}

@@ -64,13 +64,13 @@ static void ishigami_comes_out_within_its_sampling_error(void **state)
 	struct pound_sample_values values = function_values(f, 4000, 11, noiseless);
 	struct indices *got = indices_of(&values, 1);
 	for (int j = 0; j < 3; j++) {
-		// four deviations, half of those at n = 1000
+		// four standard deviations, which are half of those at n = 1000
 		check_near(got->first[j].value, f->index[j], 4.0 * 0.5 * f->error[j]);
 		check_near(got->total[j].value, f->index[D + j], 4.0 * 0.5 * f->error[D + j]);
 	}
 	assert_true(got->first[3].value == 0.0 && got->first[3].low == 0.0 && got->first[3].high == 0.0);
 	assert_true(got->total[3].value == 0.0 && got->total[3].low == 0.0 && got->total[3].high == 0.0);
-	// mean and variance of 8000 outputs, of kurtosis 3.5
+	// mean and variance of 8000 outputs with a kurtosis of 3.5
 	check_near(got->of.mean, f->mean, 4.0 * sqrt(f->variance / 8000.0));
 	check_near(got->of.variance, f->variance, 4.0 * f->variance * sqrt(2.5 / 8000.0));
 	assert_true(isnan(got->of.noise_share));
@@ -82,7 +82,7 @@ static void ishigami_comes_out_within_its_sampling_error(void **state)
 static void fresh_noise_moves_ishigamis_indices_where_theory_says(void **state)
 {
 	(void)state;
-	// known_answers 5.11: noise of variance 0.1 V fresh in every run
+	// known_answers 5.11: independent noise of variance 0.1 V in every run
 	static const double first[3] = {.2854, .4022, 0.0}, total[3] = {.5978, .4931, .3124};
 	const struct function *f = function_named("ishigami");
 	struct pound_sample_values values = function_values(f, 4000, 12, (struct function_noise){1, 0.1, false});
@@ -103,8 +103,8 @@ static void the_noise_share_is_that_of_the_signals_mean(void **state)
 		struct pound_sample_values values =
 		    function_values(f, 1000, 13, (struct function_noise){5, 1.0, common});
 		struct indices *got = indices_of(&values, 1);
-		// 1/5 of the noise is left in a mean of five: (1/5) / (1 + 1/5).  With common noise 1000 rows of 4 degrees of
-		// freedom know its variance to sqrt(2 / 4000) = 2 %, the outputs' variance to some 3 %
+		// a mean of five has 1/5 of the noise: (1/5) / (1 + 1/5).  With common noise, 1000 rows of 4 degrees of
+		// freedom give its variance to sqrt(2 / 4000) = 2 %, and the outputs' variance is known to some 3 %
 		check_near(got->of.noise_share, 1.0 / 6.0, 4.0 * 0.04 / 6.0);
 		free(got);
 		function_values_free(&values);
@@ -145,7 +145,7 @@ static void nothing_is_defined_where_nothing_varies_or_nothing_is_left(void **st
 	for (int failed = 0; failed < 2; failed++) {
 		for (int k = 0; k < 8 * SAMPLES * 3; k++) {
 			denominator[k] = 0.1 + 0.7 * (k % 17);
-			numerator[k] = failed ? NAN : 1.1 * denominator[k]; // 1.1 but for rounding
+			numerator[k] = failed ? NAN : 1.1 * denominator[k]; // 1.1 except for rounding
 		}
 		struct pound_sample_values values = {
 		    .n_rows = 8, .n_inputs = D, .n_signals = 3, .numerator = numerator, .denominator = denominator};
@@ -177,7 +177,7 @@ static void the_order_of_the_rows_does_not_matter(void **state)
 	for (int j = 0; j < D; j++) {
 		check_near(got->first[j].value, want->first[j].value, 1e-12);
 		check_near(got->total[j].value, want->total[j].value, 1e-12);
-		// other rows are resampled, so the ends move by their own error, 3 % of the half width each
+		// other rows are resampled, so the ends differ by their own error, 3 % of the half width each
 		double half = 0.5 * (want->first[j].high - want->first[j].low);
 		check_near(got->first[j].low, want->first[j].low, 5.0 * 1.4 * 0.03 * half);
 	}
@@ -227,7 +227,7 @@ static void intervals_cover_the_truth_about_as_often_as_they_say(void **state)
 		for (int j = 0; j < 2 * D; j++) {
 			if (f->index[D + j % D] == 0.0)
 				continue;
-			// lowest single coverage measured .929; four binomial deviations of 200 seeds
+			// lowest single coverage measured: .929; four binomial standard deviations for 200 seeds
 			assert_true(covered[j] >= SEEDS * (0.929 - 4.0 * sqrt(0.929 * 0.071 / SEEDS)));
 			mean += (double)covered[j] / SEEDS;
 			counted++;

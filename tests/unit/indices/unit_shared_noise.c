@@ -1,5 +1,5 @@
-/* unit_shared_noise.c - indices of outputs whose noise the samples of a row share, in one signal: of functions whose exact
- * indices follow by hand, and of a study of the engine.
+/* unit_shared_noise.c - indices of outputs whose noise is the same in all samples of a row, with one signal: of
+ * functions with exact indices in closed form, and of a study of the engine.
  *
  * Inputs x1, x2 and noise z are independent; of four inputs two have no effect.
  *
@@ -20,7 +20,7 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2, ROWS = 300 };
 
-// of a uniform number, with the mean 0 and the variance 1
+// a uniform number scaled to mean 0 and variance 1
 static double standard(double u)
 {
 	return sqrt(12.0) * (u - 0.5);
@@ -41,7 +41,7 @@ static const struct model {
 	double noise;                /* variance of y given all inputs, on average */
 	double first[D];             /* V[E(Y|x)] / V(Y) */
 	double total[D];             /* E[V(Y|all but x)] / V(Y) */
-	double first_given_noise[D]; /* E_z V[E(Y|x, z)|z] / V(Y): what pick-freeze makes of shared noise */
+	double first_given_noise[D]; /* E_z V[E(Y|x, z)|z] / V(Y): pick-freeze under shared noise */
 	double total_given_noise[D]; /* E V(Y|all but x, z) / V(Y), likewise */
 } models[] = {
     {sum, 2, {.25, .25, 0, 0}, {.75, .75, .5, .5}, {.25, .25, 0, 0}, {.25, .25, 0, 0}},
@@ -50,11 +50,11 @@ static const struct model {
 
 enum { MODELS = sizeof models / sizeof models[0] };
 
-/* What is known of the noise. */
+/* The kind of noise, and what is known of it. */
 struct noise {
-	bool elsewhere; /* outputs come from a program of the user's */
-	bool variance;  /* which says the variance of each */
-	bool fresh;     /* each sample has noise of its own */
+	bool elsewhere; /* outputs come from an external model */
+	bool variance;  /* the external model gives the variance of each output */
+	bool fresh;     /* each sample has its own noise */
 	bool quasi_random;
 	int rows;
 };
@@ -64,7 +64,7 @@ struct indices {
 	struct pound_estimate estimates[POUND_N_INDICES][POUND_INPUTS_MAX];
 };
 
-/* Noise of a sample, uniform with the mean 0 and the variance 1. */
+/* Noise of a sample, uniform with mean 0 and variance 1. */
 static double noise_of(uint64_t seed, int row, int sample)
 {
 	const struct pound_stream stream = {
@@ -96,8 +96,7 @@ static struct indices *indices_of(const struct model *model, struct noise noise,
 	                                        .random = !noise.elsewhere || noise.variance,
 	                                        .fresh_signals = noise.fresh,
 	                                        .quasi_random = noise.quasi_random,
-	                                        .n_resamples =
-	                                            8}; // few serve where no interval of theirs is looked at
+	                                        .n_resamples = 8}; // few suffice: no test uses their intervals
 	struct indices *result = calloc(1, sizeof *result);
 	double *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, &sampling));
 	for (int k = 0; k < POUND_N_INDICES; k++)
@@ -109,7 +108,7 @@ static struct indices *indices_of(const struct model *model, struct noise noise,
 
 /* ---- over many designs ---- */
 
-/* Estimates of an index of every input, from many designs. */
+/* Estimates of an index for every input, from many designs. */
 struct score {
 	int n;
 	double sum[D], squares[D]; /* of the errors */
@@ -129,14 +128,13 @@ static void score_add(struct score *score, const struct pound_estimate *estimate
 	}
 }
 
-/* The mean error is 0 but for its own standard error, taken four times, and for a bias: products of two rows' outputs about
- * the mean of all n rows are too small by V(Y)/n, and so large is the bias of their quotient by a variance estimated from
- * the rows, too.  Intervals of 95 % that hold the exact index in
- * fewer than 0.95 n - 3.1 (0.95 0.05 n)^1/2 of n designs are too narrow: that many err one time in a thousand.  Those of
- * neighbors may be too wide, by a factor of two at most: the noise of a row and of its neighbors counts twice, and the step
- * to no distance is in them.
+/* The mean error is 0 within 4 standard errors and a bias: products of two rows' outputs about the mean of all n rows
+ * are too small by V(Y)/n, and their ratio to a variance estimated from the same rows has a bias of the same size.
+ * Intervals of 95 % are too narrow if fewer than 0.95 n - 3.1 (0.95 0.05 n)^1/2 of n designs contain the exact index,
+ * which happens by chance one time in a thousand.  Intervals from neighbors may be too wide by a factor of up to two:
+ * the noise of a row and of its neighbors counts twice, and the extrapolation to distance zero is included.
  *
- * Given    share    of V(Y) that indices are shares of */
+ * Given    share    reference variance of the indices, as a fraction of V(Y) */
 static void score_check(const struct score *score, double share)
 {
 	const double n = score->n;
@@ -155,7 +153,7 @@ static void S1_is_a_share_of_the_variance_with_the_noise_in_it(void **state)
 	for (int m = 0; m < MODELS; m++) {
 		struct score score = {0};
 		for (uint64_t seed = 0; seed < SEEDS; seed++) {
-			// outputs of the engine, and of a program of the user's
+			// outputs of the engine, and of an external model
 			struct indices *got = indices_of(&models[m], (struct noise){.elsewhere = m, .rows = ROWS}, seed);
 			score_add(&score, got->estimates[POUND_S1], models[m].first);
 			free(got);
@@ -183,7 +181,7 @@ static void S1_is_one_of_the_mean_response_where_the_variance_of_the_noise_is_kn
 	}
 }
 
-/* The mean of an index over many designs, for which its exact value is known. */
+/* Checks the mean error of an index over many designs. */
 static void check_mean(const struct score *score)
 {
 	for (int j = 0; j < D; j++) {
@@ -192,7 +190,7 @@ static void check_mean(const struct score *score)
 	}
 }
 
-/* What each column estimates: raw ones what is explained given shared noise; with fresh noise all are indices of y. */
+/* What each column estimates: raw columns the indices given the shared noise; with independent noise all are indices of y. */
 static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 {
 	(void)state;
@@ -230,7 +228,7 @@ static void every_column_estimates_what_its_name_says_or_is_null(void **state)
 		}
 }
 
-/* ---- what is said ---- */
+/* ---- notes ---- */
 
 static void a_note_says_which_indices_shared_noise_leaves(void **state)
 {
@@ -244,7 +242,7 @@ static void a_note_says_which_indices_shared_noise_leaves(void **state)
 	static const struct {
 		struct noise noise;
 		unsigned notes;
-		bool first, total; /* S1, ST are there */
+		bool first, total; /* S1, ST have values */
 	} cases[] = {
 	    {{.rows = ROWS}, SIGNAL | INSIDE, true, false},
 	    {{.rows = POUND_ROWS_MIN}, SIGNAL | INSIDE, true, false},
@@ -295,8 +293,8 @@ static struct reading *study_with(const char *signals, int n_signals)
 	return r;
 }
 
-/* S1 from one signal is the same number whether samples share it or not, and far from the raw index, which holds what the
- * input and the signal do together. */
+/* S1 from one signal has the same value whether samples share the signal or not, and differs from the raw index,
+ * which contains the interaction of the input with the signal. */
 static void S1_does_not_depend_on_whether_samples_share_their_signal(void **state)
 {
 	(void)state;

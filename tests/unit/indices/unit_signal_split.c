@@ -1,5 +1,5 @@
-/* unit_signal_split.c - the parts of an index's variance that a pilot sees, against errors of many designs of functions whose
- * indices are known, and the bias of ratios of means against what it is. */
+/* unit_signal_split.c - components of an index's variance estimated by a pilot, against errors over many designs of
+ * functions with known indices; predicted against actual bias of ratios of means. */
 #include "engine/indices/signal_split.h"
 #include "engine/numeric/random.h"
 #include "tests/support/check.h"
@@ -20,7 +20,7 @@ static void parts_of(const struct pound_sample_values *values, const double *u, 
 	free(scratch);
 }
 
-/* Mean parts of pilots of a function with noise. */
+/* Mean components from pilots of a function with noise. */
 static void pilots(const struct function *f, int rows, int seeds, struct function_noise noise,
                    struct pound_split_parts mean[2 * D])
 {
@@ -48,7 +48,7 @@ static void pilots(const struct function *f, int rows, int seeds, struct functio
 		                                     mean[k].pairs / seen, mean[k].bias / seen};
 }
 
-/* Mean square error of all totals of designs of n rows with some signals, times n. */
+/* Mean square error of all totals from designs of n rows with a number of signals, times n. */
 static double total_error(const struct function *f, int rows, int seeds, struct function_noise noise)
 {
 	double square = 0.0;
@@ -79,7 +79,7 @@ static void the_variance_of_an_index_follows_its_three_parts(void **state)
 	check_near(pound_split_variance(&parts, 2), 1.0 + 3.0 + 6.0, 1e-14);
 	check_near(pound_split_variance(&parts, 4), 1.0 + 1.5 + 1.0, 1e-14);
 	check_near(pound_split_bias(&parts, 5), 0.025, 1e-15);
-	// errors of 60 designs are known to 1 / sqrt(2 60 4) of their square or worse, variances of intervals scatter likewise
+	// the mean square errors over 60 designs are known to 1 / sqrt(2 60 4) at best; variances of intervals scatter likewise
 	const struct function *f = function_named("cusp");
 	for (int common = 0; common < 2; common++) {
 		struct pound_split_parts mean[2 * D];
@@ -116,7 +116,7 @@ static void plain_means_have_no_bias(void **state)
 		check_near(mean[k].bias, 0.0, 1e-10);
 }
 
-/* Values whose numerators follow denominators of a lognormal law the less the larger the first input is. */
+/* Values with lognormal denominators; the larger the first input, the weaker the correlation of the numerators with them. */
 static void ratios_make(const double *u, int rows, uint64_t seed, int n_signals, double *numerator)
 {
 	double *denominator = numerator + (size_t)rows * (D + 2) * n_signals;
@@ -159,7 +159,7 @@ static void ratios_mean(int rows, int seeds, int n_signals, double mean[2 * D])
 		struct pound_pick_freeze result;
 		double *scratch = malloc(sizeof *scratch * pound_noise_correction_scratch(&values));
 		pound_noise_correction_estimates(&kept, (struct pound_resampling){1, 8}, scratch, &result);
-		// quotients of sums over the designs, so that those of few rows add no bias of their own
+		// ratios of sums over the designs, so that ratios of few rows add no bias
 		const double v = pound_rows_variance(&kept, kept.plain) * (1.0 - result.signal_total.value);
 		variance += v;
 		for (int j = 0; j < D; j++) {
@@ -204,7 +204,7 @@ static void the_bias_of_ratios_of_means_is_foreseen(void **state)
 		largest = fmax(largest, fabs(found));
 		off = fmax(off, fabs(found - foreseen));
 	}
-	// there is a bias to be seen, and half of it is foreseen at least
+	// the bias is visible, and at least half of it is predicted
 	assert_true(largest > 0.02);
 	assert_true(off < 0.5 * largest);
 }

@@ -6,7 +6,7 @@
 
 enum { D = 1, SAMPLES = D + 2, SIGNALS = 3 };
 
-/* Rows of one input from values; the memory goes with rows->y. */
+/* Rows of one input from values; the caller frees rows->y. */
 static struct pound_rows rows_of(int n_rows, int n_signals, const double *numerator,
                                  const double *denominator)
 {
@@ -33,7 +33,7 @@ static void outputs_are_ratios_of_means_less_the_mean_of_a_and_b(void **state)
 	check_near(rows.plain_mean, 3.0, 0.0);
 	for (int k = 0; k < 6; k++)
 		check_near(rows.plain[k], want[k] - 3.0, 0.0);
-	// the first without one signal each: 5/1, 4/2, 3/1, twice the mean of which is less 2 x 3; the others have no bias
+	// the first, without one signal each: 5/1, 4/2, 3/1, bias twice the mean minus 3; the others have no bias
 	const double bias = 2 * ((5 + 2 + 3) / 3.0 - 3);
 	check_near(rows.mean, 3.0 - bias / 4, 1e-15);
 	for (int k = 0; k < 6; k++)
@@ -55,13 +55,13 @@ static void the_variance_of_a_ratio_of_means_is_that_of_its_residuals(void **sta
 		check_near(e[k], want[k] / 6.0, 1e-14);
 	free(rows.y);
 
-	// a numerator in proportion to the denominator leaves nothing to chance, a constant one the denominator's
+	// a numerator proportional to the denominator has no noise, a constant one has the denominator's noise
 	const double proportional[] = {2, 4, 12, 3, 3, 3, 2, 4, 12}, below[] = {1, 2, 6, 1, 2, 6, 1, 2, 6};
 	rows = rows_of(1, SIGNALS, proportional, below);
 	pound_rows_noise(&rows, 0, e);
 	check_near(e[0], 0.0, 0.0);
 	check_near(e[1], 0.0, 0.0);
-	// residuals 2, 1, -3 of weights 1/9, 2/9, 6/9 in a sum of 9
+	// residuals 2, 1, -3 with weights 1/9, 2/9, 6/9 in a sum of 9
 	check_near(e[SAMPLES + 1], (4 / (8 / 9.0) + 1 / (7 / 9.0) + 9 / (3 / 9.0)) / 81, 1e-15);
 	free(rows.y);
 }
@@ -86,7 +86,7 @@ static void the_noise_of_a_ratio_is_the_same_in_any_unit(void **state)
 	assert_true(want[0] > 0);
 }
 
-/* A ratio of one signal alone says nothing of what another one would have been. */
+/* If one signal makes up the denominator, the ratio does not show the scatter between signals. */
 static void a_row_whose_denominator_is_one_signal_s_alone_is_left_out(void **state)
 {
 	(void)state;
@@ -142,7 +142,7 @@ static void a_row_is_left_out_for_any_number_it_lacks(void **state)
 	numerator[0 * ROW + 4] = NAN;
 	denominator[2 * ROW + ROW - 1] = NAN;
 	for (int r = 0; r < SIGNALS; r++)
-		denominator[4 * ROW + r] = 0.0; // no mean to divide by
+		denominator[4 * ROW + r] = 0.0; // zero denominator
 	struct pound_rows rows = rows_of(N, SIGNALS, numerator, denominator);
 	assert_int_equal(rows.n_rows, 2);
 	assert_int_equal(rows.row[0], 1);
@@ -182,7 +182,7 @@ static void the_jackknife_sees_the_bias_of_a_ratio_of_few_signals(void **state)
 	for (int k = 0; k < N * SAMPLES; k++)
 		mean += (rows.plain[k] + rows.plain_mean) / (N * SAMPLES),
 		    fair += (rows.y[k] + rows.mean) / (N * SAMPLES);
-	// a ratio scatters by sqrt(2 / 3 R) = 0.26, 12000 of them by 0.0024 in the mean
+	// a ratio has a standard deviation of sqrt(2 / 3 R) = 0.26, the mean of 12000 ratios 0.0024
 	check_near(mean, 1.0 + 1.0 / (3 * R), 0.010);
 	check_near(rows.ratio_bias, mean - 1.0, 0.010);
 	check_near(mean - rows.ratio_bias, 1.0, 0.010);

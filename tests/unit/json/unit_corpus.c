@@ -1,5 +1,5 @@
-/* What the fuzzers have found worth keeping (tests/corpus/NAME) is replayed through their targets, and the examples
- * through the readers.  A target that finds something wrong aborts. */
+/* Inputs kept from fuzzing (tests/corpus/NAME) are replayed through their targets, and the examples through the
+ * readers.  A target that detects a fault aborts. */
 #include <dirent.h>
 #include <string.h>
 
@@ -23,7 +23,7 @@
 #include "tests/fuzz/fuzz_figure.c"
 #undef LLVMFuzzerTestOneInput
 
-/* Every file of a folder through a target; how many there were. */
+/* Runs a target on every file of a folder; returns their number. */
 static int replayed(const char *folder, int (*target)(const uint8_t *bytes, size_t length))
 {
 	int n = 0;

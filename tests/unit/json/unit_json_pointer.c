@@ -93,7 +93,7 @@ static void what_is_not_json_is_not_opened(void **state)
 static void a_number_of_400_characters_keeps_its_value(void **state)
 {
 	(void)state;
-	// cJSON reads 63 characters of a number; longer ones must come through all the same
+	// cJSON reads 63 characters of a number; longer ones must be read correctly, too
 	char document[1300], digits[401], leading[401];
 	memset(digits, '7', 400);
 	memcpy(digits, "0.1", 3);

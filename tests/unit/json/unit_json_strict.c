@@ -1,4 +1,4 @@
-/* unit_json_strict.c - texts that are JSON and texts that are not, one of every kind; the public suite when it is there. */
+/* unit_json_strict.c - texts that are JSON and texts that are not, of every kind; the public test suite if it is installed. */
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,7 +20,7 @@ struct text {
 static bool passes(const char *bytes, size_t length)
 {
 	struct json_fault fault;
-	// a copy without a zero behind it, so that a sanitizer sees a byte read too many
+	// a copy without a terminating zero, so that a sanitizer detects reading beyond the end
 	char *copy = malloc(length ? length : 1);
 	assert_non_null(copy);
 	memcpy(copy, bytes, length);
@@ -85,7 +85,7 @@ static void every_kind_of_broken_text_is_refused(void **state)
 	    TEXT("[1e9999999999]"),
 	    TEXT("1,5"),
 	    TEXT("\xEF\xBC\x91"),
-	    // words
+	    // literals
 	    TEXT("tru"),
 	    TEXT("True"),
 	    TEXT("TRUE"),
@@ -187,7 +187,7 @@ static void every_kind_of_broken_text_is_refused(void **state)
 	    TEXT("\xFF\xFE{\0}\0"),
 	    TEXT("{\0}\0"),
 	    TEXT("\"\xF0\x9F\x98"),
-	    // what is not white space, and comments
+	    // characters that are not white space, and comments
 	    TEXT("[\f]"),
 	    TEXT("[\v]"),
 	    TEXT("[\xC2\xA0]"),
@@ -268,7 +268,7 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 	    {"{\"a\": 0,02}", 1, 9,
 	     "expected a member name in double quotes, found 0: a decimal comma? JSON has a decimal point"},
 	    {"{} x", 1, 4, "expected the end of the text, found x"},
-	    // a column is a character, whatever its bytes
+	    // a column counts characters, not bytes
 	    {"[\"\xC3\xA9\xF0\x9F\x98\x80\", x]", 1, 8, "expected a value, found x"},
 	    {"[\r\n\r\n  1e999]", 3, 3, "a number beyond the largest double, 1.797e308"},
 	    {"[\"ab\\q\"]", 1, 5, "an unknown escape sequence"},
@@ -285,7 +285,7 @@ static void the_place_of_a_fault_is_its_line_and_column(void **state)
 	}
 }
 
-/* `n` times a piece between two ends, passed or not. */
+/* Whether `n` repetitions of a piece between two ends are accepted. */
 static bool repeated_passes(const char *before, const char *piece, int n, const char *after)
 {
 	size_t size = strlen(before) + strlen(piece) * (size_t)n + strlen(after) + 1;
@@ -318,7 +318,7 @@ static void each_limit_is_allowed_and_one_more_is_not(void **state)
 	assert_false(repeated_passes("", "{\"a\":", 100000, ""));
 }
 
-/* Whole file; the caller frees. */
+/* The whole file; the caller frees it. */
 static char *file_bytes(const char *folder, const char *name, size_t *length)
 {
 	char path[1024];

@@ -1,4 +1,4 @@
-/* unit_json_writer.c - JSON and CSV text as written, numbers read back bit for bit. */
+/* unit_json_writer.c - JSON and CSV text as written; numbers are read back bit for bit. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -54,7 +54,7 @@ static void texts_are_escaped(void **state)
 	writer_text(&w, NULL, "");
 	writer_text(&w, NULL, "\"\\/\n\t\r\b\x01\x1f\x7f");
 	writer_text(&w, NULL, "a\"b\xC3\xA9\\");
-	// what is not UTF-8, or was cut
+	// text that is not UTF-8, or was truncated
 	writer_text(&w, NULL, "\xE9t\xC3");
 	writer_end(&w);
 	takes(&w, "[\"\", \"\\\"\\\\/\\n\\t\\u000d\\u0008\\u0001\\u001f\x7f\", \"a\\\"b\xC3\xA9\\\\\", "
@@ -177,7 +177,7 @@ static void out_of_memory_shows_only_at_the_end(void **state)
 	writer_init(&w);
 	writer_array(&w, NULL, WRITER_LINES);
 	writer_text(&w, NULL, "kept");
-	w.failed = true; // as a growth that failed leaves it
+	w.failed = true; // as after a failed growth
 	writer_text(&w, NULL, "dropped");
 	writer_number(&w, NULL, 1.0);
 	writer_end(&w);
@@ -201,7 +201,7 @@ static void long_documents_grow_without_loss(void **state)
 	writer_end(&w);
 	char *text = writer_take(&w, &length);
 	assert_int_equal(length,
-	                 7 * N + 1); // five digits, comma and blank each; no last comma, brackets, newline
+	                 7 * N + 1); // five digits, comma and space each; no last comma, brackets, newline
 	for (int i = 0; i < N; i++)
 		assert_int_equal(strtol(text + 1 + 7 * i, NULL, 10), 10000 + i);
 	free(text);

@@ -1,8 +1,8 @@
-/* Which blocks are taken, given back and done. */
+/* Which blocks are assigned, returned and done. */
 #include "schema/message/assignment.h"
 #include "tests/support/check.h"
 
-/* The block that a taker takes, -1: none. */
+/* The block that is assigned to a taker; -1: none. */
 static int take(struct assignment *a, int n_blocks, int taker, double now)
 {
 	int block = assignment_next(a, n_blocks, taker, now);
@@ -39,11 +39,12 @@ static void a_block_that_is_out_for_long_runs_elsewhere_and_counts_once(void **s
 	assert_int_equal(take(&a, 3, 0, 0), 2);
 	assert_true(assignment_done(&a, 2, 0, 1)); // a mean of one second
 	assert_int_equal(take(&a, 3, 2, 9.9), -1);
-	assert_int_equal(take(&a, 3, 1, 10.1), 1); // not its own
+	assert_int_equal(take(&a, 3, 1, 10.1), 1); // not its own block
 	assert_int_equal(take(&a, 3, 1, 10.2), -1);
 	assert_int_equal(take(&a, 3, 0, 10.3), 0);
-	assert_int_equal(take(&a, 3, 2, 30), -1); // one that runs here is never late
-	// the first values count; a thread here writes where they are kept, so that those of others do not
+	assert_int_equal(take(&a, 3, 2, 30), -1); // a block that runs here is never late
+	// the first values count; a thread of this process writes directly into the run, so values of others for its
+	// block are discarded
 	assert_true(assignment_done(&a, 1, 2, 30));
 	assert_false(assignment_done(&a, 1, 1, 30));
 	assert_false(assignment_done(&a, 0, 1, 30));

@@ -1,4 +1,4 @@
-/* Addresses that are listened at, and the token that lets a connection in. */
+/* Addresses to listen at, and the token that admits a connection. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "schema/message/listen.h"
 #include "tests/support/check.h"
 
-// of the length that tokens have
+// as long as real tokens
 #define TOKEN_16 "0123456789abcdef"
 #define TOKEN    TOKEN_16 TOKEN_16 TOKEN_16 TOKEN_16
 
@@ -19,7 +19,7 @@ static void an_address_and_its_port_are_read_and_nothing_else_is(void **state)
 {
 	static const struct {
 		const char *text;
-		int family, port; /* 0: it is refused */
+		int family, port; /* 0: refused */
 	} cases[] = {
 	    {"127.0.0.1:8438", AF_INET, 8438},
 	    {"0.0.0.0:0", AF_INET, 0},
@@ -34,7 +34,7 @@ static void an_address_and_its_port_are_read_and_nothing_else_is(void **state)
 	    {"127.0.0.1:80x", 0, 0},
 	    {"127.0.0.1:99999999999999999999", 0, 0},
 	    {":8438", 0, 0},
-	    {"::1:8438", 0, 0}, // is that a port?
+	    {"::1:8438", 0, 0}, // ambiguous: the last number may be a port
 	    {"[127.0.0.1]:80", 0, 0},
 	    {"[::1:80", 0, 0},
 	    {"[]:80", 0, 0},
@@ -56,7 +56,7 @@ static void an_address_and_its_port_are_read_and_nothing_else_is(void **state)
 	}
 }
 
-/* Whether the bytes of a connection that then ends let it in. */
+/* Whether a connection that sends these bytes and then ends is admitted. */
 static bool let_in(const char *bytes, size_t n)
 {
 	int ends[2];
@@ -84,7 +84,7 @@ static void only_the_whole_token_lets_a_connection_in(void **state)
 	}
 }
 
-/* One that sends a byte now and then holds nobody up for longer than one that sends nothing. */
+/* A client that sends a byte now and then blocks no longer than one that sends nothing. */
 static void a_token_in_drops_comes_too_late(void **state)
 {
 	int ends[2];
@@ -103,7 +103,7 @@ static void a_token_in_drops_comes_too_late(void **state)
 	clock_gettime(CLOCK_MONOTONIC, &start);
 	assert_int_equal(listen_entry(ends[1], TOKEN), LISTEN_NO_TOKEN);
 	clock_gettime(CLOCK_MONOTONIC, &end);
-	assert_true(end.tv_sec - start.tv_sec <= 4); // of 6.4 s that the token takes
+	assert_true(end.tv_sec - start.tv_sec <= 4); // the token takes 6.4 s
 	close(ends[1]);
 	waitpid(child, NULL, 0);
 }
@@ -113,7 +113,7 @@ static void a_token_file_that_cannot_be_used_is_refused_with_the_reason(void **s
 	static const struct {
 		const char *text;
 		mode_t mode;
-		const char *fault; /* NULL: it is read */
+		const char *fault; /* NULL: accepted */
 	} cases[] = {
 	    {TOKEN, 0600, NULL},
 	    {TOKEN "\n", 0400, NULL},

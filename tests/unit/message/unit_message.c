@@ -1,4 +1,4 @@
-/* Messages between coordinator and workers: what a head may hold, and connections that end. */
+/* Messages between coordinator and workers: valid heads, and connections that end. */
 #include <math.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -11,7 +11,7 @@
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 
-/* A head of every type that has no fault. */
+/* A valid head of every type. */
 static const struct message sound[] = {
     {.type = MESSAGE_READY, .block = 4, .n = 6},
     {.type = MESSAGE_STUDY, .study = 7, .n = 100},
@@ -31,7 +31,7 @@ static enum message_sender sender_of(const struct message *m)
 	return !worker ? MESSAGE_OF_COORDINATOR : MESSAGE_OF_WORKER;
 }
 
-/* Fails unless the fault of a head is about a field. */
+/* Fails unless the fault of a head is about this field. */
 static void check_fault(const struct message *m, const char *field)
 {
 	const char *fault = message_fault(m, sender_of(m));
@@ -107,7 +107,7 @@ static void a_connection_that_ends_at_any_byte_is_an_end(void **state)
 
 static void what_is_sent_is_received(void **state)
 {
-	enum { N = 100000 }; // more than a socket holds
+	enum { N = 100000 }; // more than the buffer of a socket
 	static double values[N];
 	const struct message sent = {.type = MESSAGE_VALUES, .study = 1, .block = 2, .n = N, .cpu_s = 1};
 	struct message m;

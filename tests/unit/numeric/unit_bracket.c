@@ -1,11 +1,11 @@
-/* unit_bracket.c - the search for a root: it ends at it, soon, or where the function jumps over it. */
+/* unit_bracket.c - the search for a root: it converges fast, or ends where the function jumps over zero. */
 #include <float.h>
 #include <math.h>
 
 #include "engine/numeric/bracket.h"
 #include "tests/support/check.h"
 
-/* Falling functions of one root.  The slopes are from -1 to -1e3 at it. */
+/* Decreasing functions with one root, with slopes from -1 to -1e3 at the root. */
 static double smooth(double x)
 {
 	return 1 - x - 0.3 * sin(x);
@@ -21,7 +21,7 @@ static double steep(double x)
 	return -tanh(1e3 * (x + 2.3)) - 0.1 * (x + 2.3);
 }
 
-/* Not a falling one: it comes near to 0 before it gets there. */
+/* Not monotonic: it comes near to 0 before its root. */
 static double wavy(double x)
 {
 	return 3.3 - 0.4 * x + 1.3 * sin(3 * x);
@@ -32,7 +32,7 @@ static double leaping(double x)
 	return x < 1.0 / 3 ? 0.5 - 0.1 * x : -0.2 - 0.1 * x;
 }
 
-/* Evaluations until |f| is small, or none lies between; where that is. */
+/* Evaluations until |f| is small or no number lies between; where the search ends. */
 static int evaluations(double (*f)(double), double x, double small, double *end, bool *jumps)
 {
 	struct pound_bracket bracket = {0};
@@ -51,9 +51,9 @@ static int evaluations(double (*f)(double), double x, double small, double *end,
 	return n;
 }
 
-/* Bisection takes log2(L w/small) evaluations for a function of slope L at the root and ends that are w apart: the first step
- * is as long as the function's value, the next ones four times as long at most.  At a kink an interpolation may be in vain
- * before each of them. */
+/* Bisection takes log2(L w/small) evaluations for a function of slope L at the root and a bracket of width w: the
+ * first step is as long as the function's value, and each further step at most four times as long.  At a kink an
+ * interpolation may be wasted before each of them. */
 static void a_root_is_found_from_either_side_in_twice_the_time_of_bisection(void **state)
 {
 	(void)state;
@@ -90,7 +90,7 @@ static void a_jump_over_the_root_is_found_between_two_neighbours(void **state)
 		assert_true(jumps);
 		check_near(end, 1.0 / 3, 4 * DBL_EPSILON);
 		assert_true(
-		    n < 3 * 60); // of 60 halvings from 64 to a rounding, each after two steps at most that were not
+		    n < 3 * 60); // 60 halvings from 64 to a rounding, each after at most two steps that do not halve
 	}
 }
 

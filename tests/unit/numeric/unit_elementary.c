@@ -1,4 +1,4 @@
-/* Logarithm, exponential, sine and cosine against the C library in 80-bit arithmetic, whose own error is 2^-10 of ours. */
+/* Logarithm, exponential, sine and cosine against the C library in 80-bit arithmetic, whose error is 2^-10 of ours. */
 #include <float.h>
 #include <math.h>
 
@@ -17,7 +17,7 @@ static void logarithms_are_right_to_two_units_of_the_last_place(void **state)
 {
 	(void)state;
 	double worst = 0;
-	// the fractions noise is made of
+	// the fractions from which noise is made
 	for (uint64_t word = 0; word < (uint64_t)1 << 32; word += 4099) {
 		const double x = ((double)word + 0.5) * 0x1p-32;
 		worst = fmax(worst, ulps(pound_elementary_log(x), logl(x)));
@@ -83,7 +83,7 @@ static void quarter_turns_are_exact(void **state)
 	}
 }
 
-/* The hash was taken from gcc -O2; any other compiler, optimisation and machine must give it too. */
+/* The hash is from gcc -O2; every other compiler, optimization and machine must give the same. */
 static void the_bits_are_the_same_everywhere(void **state)
 {
 	(void)state;

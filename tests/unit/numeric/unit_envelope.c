@@ -1,4 +1,4 @@
-/* unit_envelope.c - symmetric matrices by rows from their first entry on, against what they are made of. */
+/* unit_envelope.c - symmetric matrices stored by rows from their first entry on, against full matrices. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ enum { MOST = 40 };
 static int first[MOST], begin[MOST];
 static double values[MOST * (MOST + 1) / 2], whole[MOST][MOST], x[MOST], b[MOST];
 
-/* Springs between equations at random, each row to some before it, and one of `ground` from each to the ground. */
+/* Random springs between equations, each row to some rows before it, and a spring `ground` from each row to the ground. */
 static struct pound_envelope springs(uint64_t *seed, int n, double ground)
 {
 	struct pound_envelope e = {n, first, begin, values};
@@ -58,13 +58,14 @@ static void a_solution_gives_the_right_side_again(void **state)
 			double sum = 0, terms = 0;
 			for (int j = 0; j < n; j++)
 				sum += whole[i][j] * x[j], terms += fabs(whole[i][j] * x[j]);
-			// roundings of a decomposition of n rows, of the terms
+			// rounding errors of a decomposition of n rows, relative to the terms
 			check_near(sum, b[i], 4e-16 * n * (terms + 1));
 		}
 	}
 }
 
-/* Springs without ground have a motion without force: a little less ground than none is not positive definite, a little more is. */
+/* Springs without ground allow a motion without force: with slightly negative ground springs the matrix is not
+ * positive definite, with slightly positive ones it is. */
 static void what_is_not_positive_definite_is_said(void **state)
 {
 	(void)state;

@@ -1,5 +1,4 @@
-/* Philox against the vectors its authors publish; the numbers made from it against exact counts and moments.
- * */
+/* Philox against the vectors published by its authors; the numbers made from it against exact counts and moments. */
 #include <math.h>
 #include <string.h>
 
@@ -31,7 +30,7 @@ static void philox_gives_the_published_words(void **state)
 		const philox4x32_ctr_t got = philox4x32_R(10, published[i].counter, published[i].key);
 		assert_memory_equal(got.v, published[i].words.v, sizeof got.v);
 	}
-	// a stream is that counter and key: what 0x13 and sample 0x198a2e share a word
+	// a stream is this counter and key: `what` = 0x13 and sample 0x198a2e share a word
 	const struct pound_stream s = {.seed = 0x299f31d0a4093822,
 	                               .what = 0x13,
 	                               .row = 0x85a308d3,
@@ -91,12 +90,12 @@ static void whole_numbers_below_a_bound_are_equally_likely(void **state)
 	double chi2 = 0;
 	for (int i = 0; i < BOUND; i++)
 		chi2 += (count[i] - N / BOUND) * (double)(count[i] - N / BOUND) / (N / BOUND);
-	assert_true(chi2 < 30.7); /* 6 degrees of freedom: passed by 3 seeds in 100,000 */
+	assert_true(chi2 < 30.7); /* 6 degrees of freedom: exceeded for 3 seeds in 100,000 */
 	assert_int_equal(pound_random_below(stream, 0, 1), 0);
 }
 
-/* With n = 3 * 2^30 a quarter of the words must be refused; taken as they come, every third number would come
- * up twice as often as the others. */
+/* With n = 3 * 2^30 a quarter of the words must be rejected; otherwise every third number would be twice as frequent
+ * as the others. */
 static void words_beyond_the_last_multiple_of_the_bound_are_refused(void **state)
 {
 	(void)state;

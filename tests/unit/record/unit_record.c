@@ -1,7 +1,8 @@
-/* unit_record.c - files of recorded accelerations: every format with its quirks to known values, and what is refused.
+/* unit_record.c - files of recorded accelerations: every format and its variants against known values, and refused
+ * files.
  *
- * The files of tests/cases/records are made up: sample i of each is ((37 i) mod 101 - 50)/1000 of its unit, in the manner of
- * the database that the format is of. */
+ * The files of tests/cases/records are made up in the style of the databases of each format: sample i is ((37 i) mod
+ * 101 - 50)/1000 of the file's unit. */
 #include <math.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ static double sample(int i)
 	return ((37 * i) % 101 - 50) / 1000.0;
 }
 
-/* The bytes of a file, ended by 0; on the heap. */
+/* The bytes of a file, ended by 0; the caller frees them. */
 static char *file_of(const char *name, size_t *n)
 {
 	char path[128];

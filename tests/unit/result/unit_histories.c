@@ -98,7 +98,7 @@ static void the_history_of_one_signal_is_its_rows_of_all(void **state)
 	assert_int_equal(strlen(lines), to - from);
 	assert_memory_equal(lines, from, (size_t)(to - from));
 	free(one);
-	one = histories_to_csv(study, run, 3, &n, &reason); // there are three
+	one = histories_to_csv(study, run, 3, &n, &reason); // the study has three
 	assert_int_equal(*(strchr(one, '\n') + 1), 0);
 	free(one);
 	free(all);

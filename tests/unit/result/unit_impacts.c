@@ -1,4 +1,4 @@
-/* unit_impacts.c - every contact of a response, beside what the response says of all of them. */
+/* unit_impacts.c - every contact of a response, against the totals of the response. */
 #include <math.h>
 #include <string.h>
 
@@ -12,7 +12,7 @@
 
 enum { CELLS = 40, CONTACTS = 200 };
 
-/* What is known of the contacts of one signal. */
+/* Totals of the contacts of one signal. */
 struct known {
 	int n;
 	double first, speed, impulse, time, end;
@@ -25,7 +25,7 @@ static void impact_take(void *into, const struct pound_impact *impact)
 	struct known *k = &known[impact->cell][impact->contact];
 	assert_true(impact->cell < CELLS && impact->contact < CONTACTS);
 	assert_true(impact->impulse > 0 && impact->speed >= 0 && impact->end >= impact->begin);
-	// contacts of one pair of levels follow each other
+	// contacts of one pair of levels do not overlap in time
 	assert_true(k->n == 0 || impact->begin >= k->end);
 	if (k->n++ == 0) {
 		k->first = impact->begin;
@@ -37,7 +37,7 @@ static void impact_take(void *into, const struct pound_impact *impact)
 	(*(int *)into)++;
 }
 
-/* Of two oscillators that march as a pair, too: their contacts are the chain's to rounding. */
+/* Two oscillators are also simulated as a pair: their contacts equal those of the chain to rounding. */
 static void check_pair(const struct known *k, const struct pound_response *r)
 {
 	assert_int_equal(k->n, (int)r->contact_count);

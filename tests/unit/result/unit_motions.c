@@ -1,4 +1,4 @@
-/* unit_motions.c - the ground motions of a study as files: those of its runs, and the same numbers in every form. */
+/* unit_motions.c - the ground motions of a study as files: the motions of its runs, and the same numbers in every format. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static const char random_scene[] =
     "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 2}], "
     "\"contact\": null, \"excitation\": {\"type\": \"kanai_tajimi\", \"signals\": 3, \"peak_m_s2\": 2.5}}}";
 
-/* A study of a motion that was taken out of another one gives the responses of the other one. */
+/* A study whose motion is taken from another study gives the responses of that study. */
 static void motions_are_those_of_the_runs(void **state)
 {
 	(void)state;
@@ -113,7 +113,7 @@ static void a_peer_file_is_read_back(void **state)
 	pound_run_motion(run, &second.place, a);
 	check_near(record.step, step, 0);
 	assert_string_equal(record.title, "a study, signal 1");
-	// rounded once by the division, once in decimal digits and once by the product
+	// rounded by the division, in decimal digits and by the product
 	for (int i = 0; i < record.n; i++)
 		check_near(record.acceleration[i], a[i], 2 * DBL_EPSILON * fabs(a[i]));
 	record_free(&record);

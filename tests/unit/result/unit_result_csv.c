@@ -87,7 +87,7 @@ static void what_is_no_result_gives_no_table(void **state)
 	becomes("{\"cells\": []}", "");
 }
 
-/* one cell of two outputs; the second has nothing but an index */
+/* one cell of two outputs; the second has only one index */
 #define CELL(lists)                                                                                       \
 	"\"cells\": [{\"sweep\": {\"/contact/gap_m\": 0.1}, \"outputs\": [{\"name\": \"impulse\", \"mean\": " \
 	"1, " lists "}, {\"name\": \"other\", \"inputs\": [{\"name\": \"a\", \"S1\": 1}]}]}]"

@@ -1,4 +1,4 @@
-/* unit_result_floor.c - results that hold floor spectra, as JSON and as CSV. */
+/* unit_result_floor.c - results with floor spectra, as JSON and as CSV. */
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@ enum { N = 9 };
 static const char *const names[] = {"pounding",   "impact_only", "free",
                                     "dirac_line", "dirac_train", "dirac_peaks"};
 
-/* The result of study_documents_floor, made up: row r, frequency k has the mean 100 r + k, a peak at k = 4. */
+/* A made-up result of study_documents_floor: row r, frequency k has the mean 100 r + k, a peak at k = 4. */
 static char *made_up(struct pound_study *study, size_t *length)
 {
 	static double numbers[POUND_N_SPECTRA][4][N];

@@ -1,4 +1,4 @@
-/* unit_result_json.c - results written as the contract names them, from results made by hand. */
+/* unit_result_json.c - results written with the names of the contract, from results made by hand. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 
 static const struct timing timing = {1.5, 2.75, 2};
 
-/* Measures that show their own places: k + 0.5 for the k-th, but no yield displacement of the left oscillator. */
+/* Measures whose values show their positions: k + 0.5 for the k-th, but no yield displacement of the left oscillator. */
 static struct pound_response numbered(double first)
 {
 	struct pound_response response;
@@ -128,7 +128,7 @@ static void a_swept_law_stands_by_its_name(void **state)
 	check_near(reading_number(r, "/cells/1/sweep/~1law~1corrections"), 3, 0);
 	check_near(reading_number(r, "/cells/1/sweep/~1contact~1gap_m"), 0.1, 0);
 	check_near(reading_number(r, "/cells/1/signals/0/impulse_max_n_s"), 112.5, 0);
-	// outputs in the order of the engine: force, demand, impulse; each cell has those that apply to it
+	// outputs in the order of the engine: force, demand, impulse; each cell has the applicable ones
 	check_near(reading_number(r, "/cells/0/outputs/force_amplification"), 1.25, 0);
 	check_near(reading_number(r, "/cells/1/outputs/demand_amplification"), 2.5, 0);
 	check_near(reading_number(r, "/cells/1/outputs/impulse"), 3.75, 0);
@@ -144,7 +144,7 @@ static void a_swept_law_stands_by_its_name(void **state)
 
 enum { ESTIMATES = 2 * POUND_N_INDICES }; /* of two inputs */
 
-/* Indices that show their own places. */
+/* Indices whose values show their positions. */
 static void indices_fill(struct pound_indices *indices, struct pound_estimate *estimates, double first)
 {
 	*indices = (struct pound_indices){.mean = first - 1, .variance = first - 2, .noise_share = first - 3};
@@ -234,11 +234,11 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	                    "The number of rows is the largest source of error: the largest half-width of an "
 	                    "interval is 0.38, of S1 "
 	                    "of /oscillators/1/mass_kg.");
-	// the worst of all outputs of all cells; runs are those of the cells
+	// the largest over all outputs of all cells; runs are the total of the cells
 	check_near(reading_number(r, "/accuracy/runs_checked"), 31 + 33, 0);
 	check_near(reading_number(r, "/accuracy/difference_largest"), 4e-9, 0);
 	check_near(reading_number(r, "/accuracy/errors/sampling"), 0.5, 0);
-	// in proportion
+	// proportional
 	check_near(reading_number(r, "/timing/rows/0/rows"), 50, 0);
 	check_near(reading_number(r, "/timing/rows/0/cpu_s"), 1.375, 0);
 	check_near(reading_number(r, "/timing/rows/1/cpu_s"), 2.75, 0);
@@ -286,7 +286,7 @@ static void a_negative_index_is_not_clipped_but_explained(void **state)
 	    reading_text(r, "/cells/0/outputs/0/inputs/0/note"),
 	    "ST_pick_freeze: below 0 by sampling error, so the index is between 0 and the upper end of "
 	    "its interval");
-	// an index of 0 whose interval reaches below needs no words
+	// an index of 0 whose interval reaches below 0 needs no note
 	assert_false(reading_has(r, "/cells/0/outputs/0/inputs/1/note"));
 	reading_close(r);
 }
@@ -400,7 +400,7 @@ static void points_that_do_not_fill_their_nets_are_noted(void **state)
 {
 	(void)state;
 	static const struct {
-		const char *design, *note; /* "": none */
+		const char *design, *note; /* "": no note */
 	} cases[] = {{"\"method\": \"sobol\", \"rows\": 1000", "use 512 or 1024 rows"},
 	             {"\"method\": \"sobol\", \"rows\": 17, \"randomisations\": 4",
 	              "17 rows are not a power of two for each of 4"},
@@ -434,7 +434,7 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	struct pound_run *run = pound_run_create(study, 1);
 	struct pound_result result = *pound_run_result(run);
 	struct pound_look looks[] = {{1000, INFINITY, 0, 0, 0, POUND_S1}, {1200, 0.04, 1, 1, 0, POUND_ST}};
-	// before any look it is of the rows so far
+	// before the first look it describes the rows so far
 	struct reading *r = result_of(document, &result);
 	assert_false(reading_has(r, "/stopping"));
 	check_near(reading_number(r, "/partial/rows"), 1000, 0);
@@ -467,7 +467,7 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	free(document);
 }
 
-// an output whose interval grows with the rows, and one whose interval shrinks and is the narrower of both
+// an output whose interval grows with the rows, and one whose interval shrinks and is the narrower
 #define WIDENING(half)                                                                            \
 	"{\"cells\": [{\"outputs\": [{\"name\": \"impulse\", \"accuracy\": {\"rows_to_halve\": 4000," \
 	" \"rows\": [250, 1000], \"inputs\": [{\"name\": \"f_2\", \"S1_half_widths\": [0.01, 0.02],"  \
@@ -484,7 +484,7 @@ static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(
 	     "The widest 95 % interval is +-0.21, that of ST of f_2 in impulse; 4000 rows would halve it.",
 	     "With 250 rows it was +-0.09, narrower but not better: a few rare rows make much of the variance, "
 	     "and so few rows may not contain them. Quote the interval of 1000 rows."},
-	    // less than a tenth wider is no more than chance
+	    // less than a tenth wider may be chance
 	    {WIDENING("0.095"),
 	     "The widest 95 % interval is +-0.095, that of ST of f_2 in impulse; 4000 rows would halve it.", ""},
 	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, that of ST of f_2 in force.", ""},

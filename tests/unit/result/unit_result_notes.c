@@ -1,4 +1,4 @@
-/* unit_result_notes.c - what is said about estimates is true of their numbers, and nothing that needs words has none. */
+/* unit_result_notes.c - notes on estimates agree with the numbers, and every estimate that needs a note has one. */
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
-/* The note on one estimate; NULL: none.  Free with reading_close. */
+/* The note on one estimate; NULL: there is none.  Free it with reading_close. */
 static struct reading *noted(struct pound_estimate estimate, struct result_notes_source source)
 {
 	struct result_notes notes;
@@ -41,10 +41,10 @@ static void a_sentence_is_said_where_it_is_true_and_nowhere_else(void **state)
 	                  far_lost[] = "ST: far outside [0, 1] as the variance corrected for the signals' noise";
 	static const struct {
 		struct pound_estimate estimate;
-		const char *plain, *lost; /* how the note begins; NULL: there is none */
-		bool large;               /* it is said even if only large errors need words */
+		const char *plain, *lost; /* beginning of the note; NULL: there is none */
+		bool large;               /* noted even if only large errors need notes */
 	} cases[] = {
-	    // exact, and exact but for rounding
+	    // exact, and exact except for rounding
 	    {{0, 0, 0}, NULL, NULL, false},
 	    {{1, 1, 1}, NULL, NULL, false},
 	    {{-1e-16, -1e-16, -1e-16}, NULL, NULL, false},
@@ -61,11 +61,11 @@ static void a_sentence_is_said_where_it_is_true_and_nowhere_else(void **state)
 	    {{1.02, 0.98, 1.06}, above, above, false},
 	    {{-0.05, -0.08, -0.02}, whole, whole, false},
 	    {{1.05, 1.01, 1.09}, whole, whole, false},
-	    // an interval that does not hold its estimate, or none
+	    // an interval that does not contain its estimate, or no interval
 	    {{0.5, 0.6, 0.9}, outside, outside_lost, true},
 	    {{-0.5, -0.4, 0.3}, outside, outside_lost, true},
 	    {{-0.01, NAN, NAN}, none, none, true},
-	    // no share
+	    // far outside [0, 1]
 	    {{-422, -71, 2.8}, far, far_lost, true},
 	    {{-422, -500, 2.8}, far, far_lost, true},
 	    {{2.5, 0.1, 9}, far, far_lost, true},
@@ -110,9 +110,9 @@ static void estimates_of_which_the_same_is_true_share_a_sentence(void **state)
 	free(json);
 }
 
-/* ---- results of few rows under much noise ---- */
+/* ---- results from few rows with large noise ---- */
 
-/* The sentence of a note about an estimate of that name, or "". */
+/* The sentence of a note about an estimate by name, or "". */
 static const char *sentence_about(const char *note, const char *name)
 {
 	static char sentence[400];

@@ -1,4 +1,4 @@
-/* unit_samples.c - the samples of a study as CSV and as a NumPy file, against the run they come from. */
+/* unit_samples.c - the samples of a study as CSV and as a NumPy file, against the run of the study. */
 #include <math.h>
 #include <string.h>
 
@@ -38,7 +38,7 @@ static void finished_free(struct finished *f)
 	study_free(f->study);
 }
 
-/* The next number of a line, NAN for an empty cell; `at` goes behind its comma or line end. */
+/* The next number of a line, NAN for an empty cell; moves `at` past its comma or line end. */
 static double next_number(char **at)
 {
 	char *end;
@@ -84,7 +84,7 @@ static void a_line_for_every_sample_in_the_order_of_the_design(void **state)
 			check_near(next_number(&at), x[j], 0);
 		for (int o = 0; o < 2; o++) {
 			const struct pound_sample_output output = pound_run_sample_output(f.run, cell, row, sample, o);
-			bool applies = o == 1 || cell % 2 == 1; // the demand of a linear law is none
+			bool applies = o == 1 || cell % 2 == 1; // a linear law has no demand
 			assert_true(!applies || output.mean > 0);
 			same_number(next_number(&at), applies ? output.mean : NAN);
 			same_number(next_number(&at), applies ? output.variance : NAN);

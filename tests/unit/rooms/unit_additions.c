@@ -1,5 +1,5 @@
-/* unit_additions.c - the table of additions in engine/rooms.md is true: the newest member of each kind is named in no source file
- * and no page of documents and results that its row does not name. */
+/* unit_additions.c - the table of additions in engine/rooms.md is complete: source files and pages on documents and
+ * results that name the newest member of a kind are named in its row. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static const struct addition {
     {"a subcommand", "\"report\""},
 };
 
-/* The row of a kind; fails the test when there is none. */
+/* The row of a kind; fails the test if there is none. */
 static char *row_of(const char *kind)
 {
 	char *page = program_file("engine/rooms.md", NULL), head[128];

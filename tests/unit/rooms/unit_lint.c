@@ -1,4 +1,4 @@
-/* The rules that `make lint` looks for: each of them bites on a small tree that breaks it. */
+/* The rules of `make lint`: each of them reports a small tree that violates it. */
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@ struct violation {
 	const char *file;
 	const char *text;
 	const char *rule;     /* words of the sentence that lint must print */
-	const char *offender; /* and of the lines under it */
+	const char *offender; /* words of the lines under it */
 };
 
 static const struct violation VIOLATIONS[] = {
@@ -67,7 +67,7 @@ static const struct violation VIOLATIONS[] = {
 
 enum { N_VIOLATIONS = sizeof VIOLATIONS / sizeof VIOLATIONS[0] };
 
-static char root[512]; /* of the tree under test */
+static char root[512]; /* folder of the tree under test */
 
 static void write_file(const char *folder, const char *file, const char *text)
 {
@@ -79,7 +79,7 @@ static void write_file(const char *folder, const char *file, const char *text)
 	fclose(out);
 }
 
-/* Builds the engine of a small tree, as far as it compiles. */
+/* Compiles the engine of a small tree, as far as possible. */
 static void build(const char *folder)
 {
 	char command[400];
@@ -97,7 +97,7 @@ static struct program_outcome lint(const char *folder)
 	return program_run((const char *const[]){"sh", "-c", command, NULL}, NULL);
 }
 
-/* A tree that keeps all rules. */
+/* A tree that obeys all rules. */
 static void plant(char folder[32])
 {
 	static const char *const folders[] = {"engine", "engine/run", "engine/numeric", "schema",
@@ -140,7 +140,7 @@ static void a_tree_that_keeps_the_rules_passes(void **state)
 	uproot(folder);
 }
 
-/* Whether lint said a sentence, and under it what breaks the rule. */
+/* Whether lint printed a sentence, and under it the violation. */
 static bool named(const char *said, const struct violation *v)
 {
 	const char *rule = strstr(said, v->rule), *line = rule ? strchr(rule, '\n') : NULL;

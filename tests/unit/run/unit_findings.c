@@ -1,4 +1,4 @@
-/* unit_findings.c - every finding of the paper is found to hold, to fail and to be undecided where it should. */
+/* unit_findings.c - every finding of the paper is reported to hold, to fail and to be undecided for suitable evidence. */
 #include "tests/support/check.h"
 #include "tests/support/findings.h"
 
@@ -11,7 +11,7 @@ static struct pound_estimate near_to(double value)
 	return (struct pound_estimate){value, value - 0.01, value + 0.01};
 }
 
-/* Indices and scatterplots as the paper describes them. */
+/* Indices and scatter plots as the paper describes them. */
 static struct evidence as_published(void)
 {
 	static const double eps[FREQUENCIES] = {0.55, 0.5, 0.4, 0.3, 0.25, 0.2};
@@ -35,10 +35,10 @@ static struct evidence as_published(void)
 
 enum { EVERY = -1, IN_SCATTER = -2 };
 
-/* What is changed for a finding to fail, and to be undecided: of its effect and order, for every law, the index of an
- * input at a frequency f_1 or at every one; or a part of a law's scatterplot. */
+/* Changes of the evidence for which a finding fails, or is undecided: for its effect and order and for every law, the
+ * index of an input at one frequency f_1 or at every one; or a member of one law's scatter plot. */
 struct change {
-	int input, frequency; /* input IN_SCATTER: the scatterplot */
+	int input, frequency; /* input IN_SCATTER: the scatter plot */
 	size_t part;
 	int law;
 	struct pound_estimate fails, undecided;
@@ -154,7 +154,7 @@ static void exceptions_are_counted(void **state)
 	assert_int_equal(finding_judge(leads, &e, cases), FAILS);
 }
 
-/* An input above all others is not second either. */
+/* An input above all others is not second. */
 static void second_is_neither_first_nor_third(void **state)
 {
 	(void)state;

@@ -1,4 +1,5 @@
-/* unit_floor_outputs.c - floor spectra as studies ask for them: over signals, in any threads' order, beside the impulse. */
+/* unit_floor_outputs.c - floor spectra as outputs of studies: over signals, in any order of threads, together with
+ * the impulse. */
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +9,7 @@
 #include "tests/support/floor_tasks.h"
 #include "tests/support/study_documents.h"
 
-/* All blocks, from the last to the first if `backwards`, and all reductions. */
+/* Runs all blocks, from the last to the first if `backwards`, and all reductions. */
 static struct pound_run *run_all(const struct pound_study *study, bool backwards)
 {
 	struct pound_run *run = pound_run_create(study, 1);
@@ -25,7 +26,7 @@ static const char scene[] =
     "\"scene\": {\"oscillators\": [{\"frequency_hz\": 2, \"mass_kg\": 3}, {\"frequency_hz\": "
     "3.1}], \"excitation\": {\"cycles\": 8, \"signals\": %d}}";
 
-/* A study document with that scene and number of signals; the caller frees it. */
+/* A study document with this scene and number of signals; the caller frees it. */
 static struct pound_study *study_of(const char *kind, int signals, const char *more)
 {
 	char filled[400], document[1600];
@@ -51,7 +52,7 @@ static void a_study_of_one_signal_is_its_floor(void **state)
 	struct pound_run *run = run_all(&specimen.study, false);
 	const struct pound_floor_result *floor = &pound_run_result(run)->floor;
 	double psa[2][6], *into[] = {psa[0], psa[1]};
-	specimen.study.kind = POUND_KIND_RESPONSE; // to find the task
+	specimen.study.kind = POUND_KIND_RESPONSE; // needed to derive the task
 	specimen.study.n_outputs = 1;
 	struct pound_task task = floor_task_task(&specimen, true);
 	const struct pound_floor_answer answer =
@@ -110,7 +111,7 @@ static void percentiles_stand_around_the_median(void **state)
 			assert_true(s->p16[k] < s->p84[k] && s->p16[k] > 0);
 			assert_true(s->mean[k] > 0.5 * s->p16[k] && s->mean[k] < 2 * s->p84[k]);
 		}
-	// Eq. (23) is a straight line
+	// Eq. (23) is linear in the frequency
 	const double *line = floor->spectra[POUND_SPECTRUM_DIRAC_LINE].mean;
 	check_near(line[3] / line[0], 80, 1e-12);
 	pound_run_free(run);
@@ -131,7 +132,7 @@ static struct pound_study *sensitivity_of(int rows, const char *outputs, bool sp
 	return study_of("sensitivity", 2, more);
 }
 
-/* The same signals, the same scenes: an ordinate is the mean of a study of spectra. */
+/* For the same signals and scenes an ordinate is the mean of a study of spectra. */
 static void an_ordinate_is_that_of_a_study_of_spectra(void **state)
 {
 	(void)state;
@@ -155,7 +156,7 @@ static void an_ordinate_is_that_of_a_study_of_spectra(void **state)
 	study_free(spectra);
 }
 
-/* Who asks for no spectra gets the same numbers, and no floor is followed. */
+/* A study without spectra gets the same numbers, and no floor is followed. */
 static void a_study_without_spectra_does_not_pay_for_them(void **state)
 {
 	(void)state;
@@ -178,7 +179,7 @@ static void a_study_without_spectra_does_not_pay_for_them(void **state)
 	study_free(without);
 }
 
-/* Pearson's correlation of the samples A and B, computed plainly from what the samples say. */
+/* Pearson's correlation of the samples A and B, computed plainly from the sample outputs. */
 static void the_correlation_is_that_of_the_samples(void **state)
 {
 	(void)state;
@@ -190,7 +191,8 @@ static void the_correlation_is_that_of_the_samples(void **state)
 		double x[2 * ROWS], y[2 * ROWS], mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
 		for (int i = 0; i < 2 * ROWS; i++) {
 			x[i] = pound_run_sample_output(run, 0, i / 2, i % 2, o).mean;
-			// one f_1, one excitation: the ratio to the free displacement is that of the impulses for each row's signals
+			// f_1 and the excitation are the same: each row's ratio to the free displacement is proportional to its
+			// mean impulse
 			double sum = 0;
 			for (int r = 0; r < 2; r++)
 				sum += pound_blocks_run(&run->layout, i / 2 * 2 + r, 0, i % 2)[2 * study->n_outputs];
@@ -210,8 +212,8 @@ static void the_correlation_is_that_of_the_samples(void **state)
 	study_free(study);
 }
 
-/* The half widths of the correlations are right if they are Student's over the scatter of the correlations that whole groups
- * leave out: known from the samples by hand. */
+/* The half widths of the correlations must be Student's quantile times the scatter of the correlations without one
+ * group, which the test computes from the samples. */
 static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 {
 	(void)state;
@@ -245,7 +247,7 @@ static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 	}
 	for (int g = 0; g < groups; g++)
 		squares += (pseudo[g] - mean) * (pseudo[g] - mean);
-	// 97.5 % of Student's law of 7 degrees of freedom
+	// 97.5 % quantile of Student's distribution with 7 degrees of freedom
 	const double half = 2.364624251592784 * sqrt(squares / (groups - 1) / groups);
 	check_near(r->high - r->value, half, 1e-8);
 	check_near(r->value - r->low, half, 1e-8);
@@ -258,7 +260,7 @@ static void its_interval_is_by_groups_where_the_rows_have_some(void **state)
 struct instants_seen {
 	int n, signal, doubled;
 	struct pound_instant last;
-	double impulse; /* of the contact force by straight lines, all contacts */
+	double impulse; /* integral of the contact force of all contacts by linear interpolation */
 };
 
 static void instant_take(void *into, int signal, const struct pound_instant *instant)
@@ -289,10 +291,10 @@ static void a_history_is_that_of_the_signal(void **state)
 		check_near(seen.last.v[0], r->end_v1, 1e-8 * r->displacement_max_1);
 		check_near(seen.last.u[1], r->end_u2, 1e-9 * r->displacement_max_2);
 		check_near(seen.last.v[1], r->end_v2, 1e-8 * r->displacement_max_2);
-		// a contact that begins with the first sample has one row there, not two
+		// a contact that begins at the first sample has one row there, not two
 		int events = 2 * (int)r->contact_count - (seen.last.force != 0);
 		assert_in_range(seen.doubled, events - 1, events);
-		// the momentum that contacts give, between none and the largest for each of them
+		// the total impulse of the contacts is between zero and the number of contacts times the largest impulse
 		assert_true(seen.impulse > 0 && seen.impulse < r->impulse_max * r->contact_count);
 	}
 	pound_run_free(run);

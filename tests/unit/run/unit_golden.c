@@ -1,10 +1,10 @@
-/* unit_golden.c - the result bytes of every example, timing aside, as hashes in tests/cases/golden.txt: the same at every lane
- * width, by 1, 2 and 4 threads, and in every version until one says that it changes them.
+/* unit_golden.c - the result bytes of every example without timing, as hashes in tests/cases/golden.txt: the same at
+ * every lane width, with 1, 2 and 4 threads, and in every version until one declares a change.
  *
- * `make test` cuts designs to few rows and leaves out the portable build, which is a tenth as fast; `make golden` computes
- * whole examples in every way (POUND_GOLDEN=whole).
- * A version that changes results on purpose: POUND_GOLDEN=print prints the new file.
- * The Makefile links pound_dispatch_width through this file, which asks for one width. */
+ * `make test` uses few rows and omits the portable build, which is ten times slower; `make golden` computes whole
+ * examples in every way (POUND_GOLDEN=whole).
+ * For a version that changes results on purpose, POUND_GOLDEN=print prints the new file.
+ * The Makefile links pound_dispatch_width through this file, which requests one width. */
 #include <nettle/sha2.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -30,7 +30,7 @@ enum {
 int __real_pound_dispatch_width(int lanes);
 int __wrap_pound_dispatch_width(int lanes);
 
-static int asked_lanes; /* 0: the widest of this machine; PORTABLE: one, without fused instructions */
+static int asked_lanes; /* 0: the widest of this machine; PORTABLE: one lane without fused instructions */
 
 int __wrap_pound_dispatch_width(int lanes)
 {
@@ -44,7 +44,7 @@ struct pool {
 	enum pound_status (*job)(struct pound_run *run, int index, int worker);
 	int n_jobs;
 	atomic_int next;
-	pthread_barrier_t ready; /* all threads take jobs, even where one could take all */
+	pthread_barrier_t ready; /* all threads take jobs, even if one could do all of them */
 };
 
 struct member {
@@ -78,7 +78,7 @@ static void all_jobs(struct pool *pool, int first, int n_threads)
 	pthread_barrier_destroy(&pool->ready);
 }
 
-/* The SHA-256 of a study's result by so many threads, in hexadecimal digits. */
+/* The SHA-256 of a study's result with a number of threads, in hexadecimal digits. */
 static void hash_result(const struct pound_study *study, int n_threads, char hash[static HASH_TEXT])
 {
 	struct pool pool = {.run = pound_run_create(study, n_threads)};
@@ -107,7 +107,7 @@ static void hash_result(const struct pound_study *study, int n_threads, char has
 	pound_run_free(pool.run);
 }
 
-/* The study of an example that this program can run, NULL for a model that is run elsewhere; cut: of few rows. */
+/* The study of an example that this program can run, NULL for an external model; cut: with few rows. */
 static struct pound_study *study_of(const char *text, bool cut)
 {
 	struct problems problems;
@@ -129,7 +129,7 @@ static bool asked(const char *what)
 	return golden && strcmp(golden, what) == 0;
 }
 
-/* The hash that tests/cases/golden.txt has for an example: lines of name, hash when cut, hash when whole. */
+/* The hash in tests/cases/golden.txt for an example: lines of name, hash when cut, hash when whole. */
 static void hash_known(const char *name, bool whole, char hash[static HASH_TEXT])
 {
 	FILE *file = fopen("tests/cases/golden.txt", "r");
@@ -145,7 +145,7 @@ static void hash_known(const char *name, bool whole, char hash[static HASH_TEXT]
 		fail_msg("tests/cases/golden.txt has no example %s", name);
 }
 
-/* What tests/cases/golden.txt is to hold. */
+/* Prints new contents of tests/cases/golden.txt. */
 static void print_hashes(void)
 {
 	for (int i = 0; example_name(i); i++) {

@@ -1,6 +1,6 @@
-/* unit_groups.c - indices of groups of inputs as of one input, of functions for which they are known.
+/* unit_groups.c - indices of groups of inputs, for functions with known indices.
  *
- * Of a product of independent factors with mean 1 and variances v_j a set u explains prod_u (1 + v_j) - 1. */
+ * In a product of independent factors with mean 1 and variances v_j, a set u explains prod_u (1 + v_j) - 1. */
 #include "tests/support/check.h"
 
 #include "engine/pound.h"
@@ -11,7 +11,7 @@
 enum { D = 7, GROUPS = 4 };
 
 static const double a[D] = {0, 0.5, 1, 2, 4, 9, 0};
-// the last has the input without effect, and one that overlaps the others
+// the last contains the input without effect, and overlaps another
 static const unsigned sets[GROUPS] = {0x3, 0xc, 0x31, 0x60};
 
 /* Sobol's g of the first six inputs. */
@@ -83,7 +83,7 @@ static void indices_of_a_group_are_those_of_its_inputs_as_one(void **state)
 		for (int g = 0; g < GROUPS; g++) {
 			const struct pound_estimate *first = &groups->first[g], *total = &groups->total[g];
 			const double half[2] = {0.5 * (first->high - first->low), 0.5 * (total->high - total->low)};
-			// of 24 intervals of two deviations one may miss, none by another half of it
+			// one of 24 intervals of two standard deviations may miss, none by more than another half of its half width
 			check_near(first->value, explained(sets[g]) / whole, 1.5 * half[0]);
 			check_near(total->value, 1 - explained(0x3f & ~sets[g]) / whole, 1.5 * half[1]);
 			assert_true(half[0] > 0 && half[0] < 0.1 && half[1] > 0 && half[1] < 0.1);
@@ -98,7 +98,7 @@ static void a_group_without_effect_explains_nothing(void **state)
 	struct pound_study study = study_of(0);
 	struct pound_run *run = run_of(&study, inert);
 	const struct pound_indices *indices = &pound_run_result(run)->cells[0].indices[0];
-	// a polynomial of second degree: what is left is rounding
+	// a polynomial of second degree: only rounding errors remain
 	check_near(indices->groups.total[3].value, 0, 1e-9);
 	check_near(indices->groups.first[3].value, 0, 1e-9);
 	// x0 has 1/12, 2 x1 x2 has 4 (1/9 - 1/16)

@@ -1,5 +1,5 @@
-/* unit_growth.c - designs that grow until their intervals are narrow, and results of the first rows: of functions that
- * are run in the place of simulations, and of whole studies. */
+/* unit_growth.c - designs that grow until their intervals are narrow, and results of the first rows: with functions
+ * in place of simulations, and with whole studies. */
 #include "engine/design/design.h"
 #include "engine/pound.h"
 #include "schema/study/study_json.h"
@@ -14,7 +14,7 @@
 
 enum { D = FUNCTION_INPUTS, SAMPLES = D + 2 };
 
-// designs behind a coverage: fewer where every step is watched
+// designs per coverage; fewer under sanitizers, which are slow
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 enum { SEEDS = 6 };
 #else
@@ -29,7 +29,7 @@ static int method_named(const char *name)
 	return row;
 }
 
-/* A study of a function's four inputs, that is run here. */
+/* A study of a function's four inputs, run here. */
 static struct pound_study study_of(const char *method, int rows, uint64_t seed, double half_width,
                                    int max_runs)
 {
@@ -53,7 +53,7 @@ static void assign(struct pound_run *run, const struct function *f, int first)
 		}
 }
 
-/* The function's study from end to end; the run, for the caller to free. */
+/* Runs the function's study from start to end; the caller frees the run. */
 static struct pound_run *run_of(const struct pound_study *study, const char *function)
 {
 	struct pound_run *run = pound_run_create(study, 1);
@@ -90,7 +90,7 @@ static void a_design_grows_by_whole_batches_and_by_doubling(void **state)
 		const char *method;
 		int rows, max_runs, looks[5], most;
 	} cases[] = {
-	    // 6 runs a row
+	    // 6 runs per row
 	    {"lhs", 1000, 60000, {1000, 1200, 1400, 1600, 1800}, 10000},
 	    {"lhs", 2, 60000, {1000, 1200, 1400, 1600, 1800}, 10000},
 	    {"lhs", 1234, 60000, {1300, 1500, 1700, 1900, 2100}, 10000},
@@ -204,7 +204,7 @@ static void a_grown_sobol_design_has_the_indices_of_one_of_that_size_from_the_st
 	pound_run_free(run), pound_run_free(other);
 }
 
-/* Share of the 8 indices that lie in their intervals where a design has stopped, over seeds. */
+/* Fraction of the 8 indices within their intervals when the design stops growing, over seeds. */
 static double coverage_at_stop(const char *method, const char *function, double half_width, int seeds)
 {
 	const struct function *f = function_named(function);
@@ -225,7 +225,7 @@ static double coverage_at_stop(const char *method, const char *function, double 
 static void intervals_cover_where_a_design_has_stopped(void **state)
 {
 	(void)state;
-	// of 8 indices a design of nominal 95 %, as if two of them were independent: 3.5 standard deviations
+	// 8 indices per design, nominal 95 %, as if two of them were independent: 3.5 standard deviations
 	const double allowed = 3.5 * sqrt(0.95 * 0.05 / (2 * SEEDS));
 	check_near(coverage_at_stop("sobol", "cusp", 0.03, SEEDS), 0.95, allowed);
 	check_near(coverage_at_stop("sobol", "steps", 0.08, SEEDS), 0.95, allowed);
@@ -303,7 +303,7 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 			runs += b < missing ? pound_run_block_runs(run, b) : 0;
 		}
 	const int rows = pound_run_rows_done(run, done);
-	// 24 runs a row; the block that is missing begins within a row
+	// 24 runs per row; the missing block begins within a row
 	assert_int_equal(rows, runs / pound_design_row_runs(study));
 	assert_true(runs % pound_design_row_runs(study) > 0);
 	pound_run_rows_take(run, rows);
@@ -313,7 +313,7 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	assert_int_equal(result->rows, rows);
 	assert_int_equal(result->cells[0].runs, rows * 12);
 
-	// rows of a random design are those of a shorter one
+	// the rows of a random design begin with those of a shorter one
 	struct pound_study *shorter = study_with("\"method\": \"random\", \"rows\": 150");
 	shorter->design.rows = rows;
 	struct pound_run *whole = specimen_run(shorter);
@@ -323,14 +323,14 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	free(done);
 }
 
-/* Studies of one shape after each other, in memory that is handed out again as it was left. */
+/* Studies of the same shape one after another, in memory that is reused without being cleared. */
 static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
 {
 	(void)state;
 	enum { ROWS = 330, SIZE = sizeof(struct pound_estimate) * D };
 	const struct pound_study study = study_of("lhs", ROWS, 2, 0, 0), other = study_of("lhs", ROWS, 1, 0, 0);
 	char before[POUND_N_INDICES][SIZE];
-	// nothing goes back to the system; the sanitizers' allocators do not listen
+	// no memory is returned to the system; the sanitizers' allocators ignore this
 	mallopt(M_MMAP_MAX, 0);
 	mallopt(M_TRIM_THRESHOLD, 1 << 30);
 	for (int round = 0; round < 3; round++) {
@@ -346,8 +346,8 @@ static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
 	}
 }
 
-/* Totals of x0 / 2 + 2 x1 / 3 + x2 + 2 x3 are as 9 : 16 : 36 : 144; two inputs with as many waves have the same ones, and
- * no polynomial follows them. */
+/* Totals of x0 / 2 + 2 x1 / 3 + x2 + 2 x3 have the ratios 9 : 16 : 36 : 144; two inputs with equally many waves have
+ * equal totals, which no polynomial explains. */
 static double four_effects(const double *x)
 {
 	return x[0] / 2 + 2 * x[1] / 3 + x[2] + 2 * x[3];
@@ -376,7 +376,7 @@ static void a_design_stops_when_the_order_of_the_inputs_is_certain(void **state)
 		const struct pound_result *result = pound_run_result(run);
 		const struct pound_look *last = &result->looks[result->n_looks - 1];
 		if (k) {
-			// equal indices are never in order: max_runs ends it
+			// equal indices never have a certain order, so max_runs ends the growth
 			assert_int_equal(last->rows, 2000);
 			assert_true(last->half_width > 1e-6 && last->index == POUND_ST);
 		} else {

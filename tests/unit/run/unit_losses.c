@@ -1,6 +1,8 @@
-/* unit_losses.c - accelerations, forces, speeds, residual displacements and energies: closed forms, and the conservation of energy.
+/* unit_losses.c - accelerations, forces, speeds, residual displacements and energies: closed forms, and conservation
+ * of energy.
  *
- * A constant ground acceleration A puts in exactly -A sum m u(end): what is not in the bodies at the end is lost. */
+ * A constant ground acceleration A puts in the energy -A sum m u(end): the part that the bodies do not have at the
+ * end is lost. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +14,7 @@ static const double PI = 3.14159265358979323846;
 
 enum { SAMPLES = 301 };
 
-/* A record of one acceleration all along [m/s2]. */
+/* A record of one constant acceleration [m/s2]. */
 static const char *constant(double a)
 {
 	static char text[12 * SAMPLES + 200];
@@ -24,7 +26,7 @@ static const char *constant(double a)
 	return text;
 }
 
-/* The response of a scene under it. */
+/* The response of a scene to a constant acceleration. */
 static struct reading *response(const char *scene, double a, const char *outputs)
 {
 	static char document[16384];
@@ -40,7 +42,7 @@ static double output(const struct reading *r, const char *name)
 	return reading_number((struct reading *)r, "/outputs/%s", name);
 }
 
-/* An undamped body beside a wall: u'' + w^2 u = -A, and with the contact's spring W^2 = w^2 + K/m. */
+/* An undamped body beside a wall: u'' + w^2 u = -A; with the contact spring W^2 = w^2 + K/m. */
 static void an_undamped_body_has_its_closed_forms(void **state)
 {
 	static const char body[] =
@@ -55,7 +57,7 @@ static void an_undamped_body_has_its_closed_forms(void **state)
 	check_near(output(r, "acceleration_amplification"), 1, 0);
 	reading_close(r);
 
-	// pressed to the wall from the start
+	// in contact with the wall from the start
 	snprintf(scene, sizeof scene, "%s, \"contact\": {\"stiffness_ratio\": 8, \"restitution\": 1}", body);
 	r = response(scene, -a,
 	             "\"peak_contact_force_n\", \"peak_acceleration_m_s2\", \"peak_acceleration_free_m_s2\", "
@@ -65,7 +67,7 @@ static void an_undamped_body_has_its_closed_forms(void **state)
 	check_near(output(r, "peak_acceleration_free_m_s2"), 2 * a, 1e-12);
 	reading_close(r);
 
-	// it meets the wall at v^2 = 2 A g - w^2 g^2 first, and never faster
+	// the first impact has v^2 = 2 A g - w^2 g^2, and no later impact is faster
 	static const char *const models[] = {"kelvin_voigt", "hertz_damp", "rigid"};
 	const double gap = 0.03, v = sqrt(2 * a * gap - w * w * gap * gap);
 	for (int k = 0; k < 3; k++) {
@@ -87,20 +89,21 @@ struct body {
 
 static const struct body bodies[2] = {{3, 1, 0.05}, {1, 1.7, 0.05}};
 
-/* What a body of the elastoplastic law has at the end: in motion, and on its spring, which has no force at its residual. */
+/* Energy of a body at the end: kinetic, and of the spring, whose force is zero at the residual displacement. */
 static double left_in(const struct reading *r, int i, bool elastoplastic)
 {
 	const double w = 2 * PI * bodies[i].frequency, k = bodies[i].mass * w * w;
 	const double u = reading_number((struct reading *)r, "/signals/0/end/u%d_m", i + 1),
 	             v = reading_number((struct reading *)r, "/signals/0/end/v%d_m_s", i + 1);
 	double residual = 0;
-	if (elastoplastic) // of two directions, that of the magnitude which is nearer
+	if (elastoplastic) // the output is a magnitude: the nearer of both signs
 		residual = output(r, i ? "residual_displacement_right_m" : "residual_displacement_m");
 	const double away = fmin(fabs(u - residual), fabs(u + residual));
 	return 0.5 * bodies[i].mass * v * v + 0.5 * k * away * away;
 }
 
-/* Every contact model, linear and yielding bodies without dashpots: what is put in is in the bodies, in the laws or in the contact. */
+/* Every contact model, linear and yielding bodies without dashpots: energy is put in, stored in the bodies, or lost
+ * in the laws or in the contact. */
 static void what_is_put_in_is_found_again(void **state)
 {
 	static const char *const laws[] = {"{\"type\": \"linear\"}",
@@ -124,7 +127,7 @@ static void what_is_put_in_is_found_again(void **state)
 			    elastic  ? ""
 			    : damped ? ", \"restitution\": 0.6"
 			             : ", \"yield_overlap_m\": 1e-4, \"second_stiffness_ratio\": 0.2");
-			const double a = law ? -2 : 2; // bodies that yield away from each other never meet again
+			const double a = law ? -2 : 2; // else bodies yield apart and never meet again
 			struct reading *r =
 			    response(scene, a,
 			             law ? "\"contact_energy_ratio\", \"hysteresis_energy_ratio\", "
@@ -138,7 +141,7 @@ static void what_is_put_in_is_found_again(void **state)
 			}
 			double lost = output(r, "contact_energy_ratio");
 			assert_true(reading_number(r, "/signals/0/contact_count") > 0);
-			// one that is open at the end has lost what it holds
+			// energy stored in a contact that has not ended counts as lost
 			assert_true(elastic ? law || fabs(lost) < 1e-12 : lost > 1e-9);
 			if (law) {
 				assert_true(output(r, "hysteresis_energy_ratio") > 1e-3);
@@ -205,7 +208,7 @@ static void one_story_rows_have_the_outputs_of_pairs(void **state)
 	reading_close(of_row);
 }
 
-/* What no output reads is not run. */
+/* Runs that no output needs are left out. */
 static void what_is_not_asked_for_is_not_run(void **state)
 {
 	static const char *const outputs[] = {"\"peak_impulse_n_s\"",

@@ -1,4 +1,4 @@
-/* unit_outputs.c - outputs that are means over the signals: each against the numbers of the single signals. */
+/* unit_outputs.c - outputs that are means over the signals: each against the values of the single signals. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -33,7 +33,7 @@ static const struct {
 
 enum { SIGNALS = 8 };
 
-/* Mean over the signals of a number of theirs. */
+/* Mean over the signals of one of their measures. */
 static double mean_of(struct reading *result, const char *measure)
 {
 	double sum = 0;
@@ -42,7 +42,7 @@ static double mean_of(struct reading *result, const char *measure)
 	return sum / SIGNALS;
 }
 
-/* A pair of which some signals close the gap, others do not. */
+/* A pair whose gap is closed by some signals and not by others. */
 static void outputs_of_pairs_are_means_of_the_signals(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic"};
@@ -63,7 +63,7 @@ static void outputs_of_pairs_are_means_of_the_signals(void **state)
 				continue;
 			const double want = mean_of(r, of_pairs[k].measure);
 			assert_true(want > 0);
-			// the sums are in the same order
+			// the sums have the same order
 			check_near(reading_number(r, "%s", at), want, 0);
 		}
 		int touched = 0;
@@ -80,7 +80,7 @@ static void outputs_of_pairs_are_means_of_the_signals(void **state)
 	}
 }
 
-/* Bodies that touch at rest: the right one's response without pounding is run only where an output reads it. */
+/* Bodies in contact at rest: the right body is run without pounding only if an output reads it. */
 static void the_right_body_is_run_where_an_output_reads_it(void **state)
 {
 	static const char *const outputs[] = {"peak_displacement_m", "peak_displacement_free_right_m"};
@@ -104,7 +104,7 @@ static void the_right_body_is_run_where_an_output_reads_it(void **state)
 	assert_true(run[0] < run[1]);
 }
 
-/* A row: outputs of a place are those of its story and floor, outputs of contacts are the largest or the sum of all. */
+/* A row: outputs of a place are those of its story and floor; outputs of contacts are the largest or the sum over all. */
 static void outputs_of_rows_are_means_of_the_signals(void **state)
 {
 	static const struct {
@@ -161,7 +161,7 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 	reading_close(r);
 }
 
-/* A number of a study of one signal; `part`: what follows the output's name. */
+/* A value from a study of one signal; `part` follows the output's name. */
 static double number_at(const char *scene, const char *law, double gap, int seed, const char *output,
                         const char *part)
 {
@@ -181,7 +181,7 @@ static double number_of(const char *scene, const char *law, double gap, int seed
 	return number_at(scene, law, gap, seed, output, "");
 }
 
-/* Brute force: the bodies touch with a gap smaller by parts in 1e9, and do not with one larger by as much. */
+/* Brute force: the bodies touch if the gap is smaller than needed by 1e-9, and not if it is larger by 1e-9. */
 static void the_gap_needed_decides_which_signals_pound(void **state)
 {
 	static const char *const scenes[] = {
@@ -204,7 +204,7 @@ static void the_gap_needed_decides_which_signals_pound(void **state)
 			}
 }
 
-/* The same of rows: some contact closes exactly where one needs more than its gap.  One-story buildings need what oscillators do. */
+/* For rows: some contact closes exactly if it needs more than its gap.  One-story buildings need the same as oscillators. */
 static void the_gap_needed_decides_which_signals_pound_in_rows(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic", "origin_oriented"};
@@ -248,7 +248,7 @@ static void the_gap_needed_decides_which_signals_pound_in_rows(void **state)
 			}
 }
 
-/* Bodies exchanged close a gap where these open it. */
+/* With the bodies exchanged, the gap closes when it opened before. */
 static void the_relative_displacement_is_the_larger_of_both_directions(void **state)
 {
 	static const char here[] = "\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 1.7}]",
@@ -265,7 +265,7 @@ static void the_relative_displacement_is_the_larger_of_both_directions(void **st
 	assert_true(opening > 0 && opening < 8);
 }
 
-/* Maps from sample to sample beside the exact solver and its observer, with 1 to 6 ground motions of the same bodies. */
+/* Maps from sample to sample against the exact solver and its observer, with 1 to 6 ground motions of the same bodies. */
 static void linear_bodies_have_the_peaks_that_an_observer_finds(void **state)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
@@ -301,13 +301,13 @@ static void linear_bodies_have_the_peaks_that_an_observer_finds(void **state)
 				check_near(peak[j][k], peaks.peak[k], 1e-12 * (peaks.peak[0] + peaks.peak[1]));
 		}
 	}
-	// a sample that is long beside a period is for the solver
+	// a sample that is long relative to a period needs the solver
 	struct pound_task stiff = {.time_step = 1, .bodies = {{.backbone = {.stiffness = 4}}, {.drive = 1}}};
 	double peak[2];
 	assert_false(pound_pairs_add(&pairs, &stiff, peak));
 }
 
-/* Two free masses that meet at 10 cm and separate for good. */
+/* Two free masses that meet after 10 cm and separate for good. */
 static void bodies_that_meet_have_closed_their_gap(void **state)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];

@@ -1,5 +1,5 @@
-/* unit_pilot.c - studies with signals "auto": the split that a pilot finds is the study's, for any number of workers, and the best of
- * those that it foresees. */
+/* unit_pilot.c - studies with signals "auto": the split found by a pilot is used by the study, does not depend on the
+ * number of workers, and is the best of the predicted ones. */
 #include "engine/pound.h"
 #include "schema/examples/examples.h"
 #include "schema/result/result_json.h"
@@ -11,7 +11,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* The paper's study of few runs, at a frequency where its noise is large. */
+/* The paper's study with few runs, at a frequency where its noise is large. */
 static struct pound_study *auto_study(const char *design)
 {
 	char *all = study_documents_with(example_text("paper_linear"), "\"signals\": 5", "\"signals\": \"auto\"");
@@ -73,7 +73,7 @@ static void a_split_study_is_the_study_with_that_split(void **state)
 		struct pound_run *written = run_of(&plain, 1);
 		check_same(pound_run_result(written), pound_run_result(one), study->n_outputs);
 		assert_int_equal(pound_run_result(written)->split.signals, 0);
-		// nothing beyond the runs that were allowed
+		// no more runs than allowed
 		const int64_t allowed = k == 1 ? 12000 : 9000;
 		assert_true(pound_run_result(one)->cells[0].runs + split->pilot_runs <= allowed);
 		check_report("%s %d signals, %d rows", designs[k], split->signals, pound_run_result(one)->rows);
@@ -98,7 +98,7 @@ static void the_split_is_the_best_of_those_foreseen(void **state)
 		if (split->choices[k].signals == split->signals)
 			check_near(split->choices[k].half_width, least, 0.0);
 	check_near(split->decided_by.half_width, least, 0.0);
-	// at 0.5 Hz most of the variance is noise: two signals are too few
+	// at 0.5 Hz most of the variance is noise: two signals are not enough
 	assert_true(split->signals > 2);
 	assert_int_equal(split->pilot_rows, 32);
 	assert_int_equal(split->pilot_runs, 32 * 6 * 6);

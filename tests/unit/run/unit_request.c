@@ -1,5 +1,5 @@
-/* unit_request.c - what a study needs: every response of every run is made, found to be one that was made, or left out for a
- * reason that is counted. */
+/* unit_request.c - the responses that a study needs: every response of every run is computed, found to equal an
+ * earlier one, or left out for a reason that is counted. */
 #include <string.h>
 
 #include "engine/pound.h"
@@ -8,16 +8,16 @@
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
-/* A law as a document has it, and the nonlinear responses it takes without pounding. */
+/* A law in a document, and the number of nonlinear responses without pounding that it needs. */
 struct law {
 	const char *text;
 	int nonlinear;
 	bool given;
-	bool searched; /* each response reports how far the demand is off its target, the last too */
+	bool searched; /* all responses, the last too, report the distance of the demand from its target */
 };
 
-// the yield displacement is found in corrections + 1 responses, the last of which is the answer; in fewer by a search that ends
-// sooner, which none does in four
+// the yield displacement takes corrections + 1 responses, the last of which is the result; fewer if the search ends
+// sooner, which no search of four responses does
 static const struct law laws[] = {
     {"{\"type\": \"linear\"}", 0, false, false},
     {"{\"type\": \"elastoplastic\"}", 2, false, false},

@@ -1,7 +1,7 @@
 /* unit_row_floors.c - floor spectra and histories of rows of buildings, from documents.
  *
- * 1. One-story rows beside two oscillators, which another march follows.
- * 2. Mirrored rows; a place of a study of spectra and of a sensitivity study; the end of a history and its contact.
+ * 1. One-story rows against two oscillators, which another solver integrates.
+ * 2. Mirrored rows; places in studies of spectra and in sensitivity studies; the end of a history, and its contact.
  * 3. Spectra from histories of every contact model. */
 #include <math.h>
 #include <string.h>
@@ -51,7 +51,7 @@ static void spectra_free(struct spectra *s)
 	study_free(s->study);
 }
 
-/* Largest relative difference of two ordinates. */
+/* Largest relative difference between two ordinates. */
 static double spectra_apart(const struct spectra *a, const struct spectra *b)
 {
 	double most = 0;
@@ -141,7 +141,7 @@ static void a_place_without_a_name_is_the_top_of_the_left_building(void **state)
 	for (int row = 0; row < POUND_N_INTEGRATED; row++)
 		for (int k = 0; k < a.study->spectrum.n; k++)
 			assert_true(c.floor->spectra[row].error[k] < 1e-8);
-	// nothing touches floor 4: its own part of the push is none
+	// floor 4 has no contact, so its impact-only spectrum is zero
 	check_near(a.floor->spectra[POUND_SPECTRUM_IMPACT_ONLY].mean[2], 0, 0);
 	assert_true(c.floor->spectra[POUND_SPECTRUM_IMPACT_ONLY].mean[2] > 0);
 	spectra_free(&a);
@@ -182,7 +182,7 @@ static void an_ordinate_of_a_row_is_that_of_a_study_of_spectra(void **state)
 
 struct last {
 	int rows;
-	double impulse; /* of the contact force, by the trapezium rule */
+	double impulse; /* integral of the contact force by the trapezoidal rule */
 	struct pound_instant at;
 };
 
@@ -219,7 +219,7 @@ static void a_history_ends_where_the_response_does(void **state)
 		check_near(last.at.time, 2, 1e-12);
 		check_near(last.at.u[0], row->storeys[4 + storey - 1].end_u, 1e-13);
 		check_near(last.at.v[0], row->storeys[4 + storey - 1].end_v, 1e-11);
-		// the left building is pushed to the left, the right one to the right
+		// the contact pushes the left building to the left, the right one to the right
 		assert_true(last.impulse < 0);
 		assert_true(last.rows > 201);
 		spectra_free(&s);
@@ -228,12 +228,12 @@ static void a_history_ends_where_the_response_does(void **state)
 	study_free(study);
 }
 
-/* What a history says of the contact of its floor. */
+/* What a history shows of the contact of its floor. */
 struct contact_history {
-	double gap;           /* of the document [m] */
-	double off, size;     /* largest |gap_m - (gap + u_right - u)|, and displacement [m] */
-	double force, impact; /* largest force [N], and impulse of one contact by the trapezium rule [N s] */
-	double wrong;         /* largest force where there can be none [N] */
+	double gap;           /* gap in the document [m] */
+	double off, size;     /* largest |gap_m - (gap + u_right - u)|, and largest displacement [m] */
+	double force, impact; /* largest force [N]; largest impulse of a contact, trapezoidal rule [N s] */
+	double wrong;         /* largest force at times when there must be none [N] */
 	double now;
 	struct pound_instant at;
 };
@@ -245,7 +245,7 @@ static void contact_take(void *of, int signal, const struct pound_instant *i)
 	h->size = fmax(h->size, fmax(fabs(i->u[0]), fabs(i->u[1])));
 	h->off = fmax(h->off, fabs(i->gap - (h->gap + i->u[1] - i->u[0])));
 	h->force = fmax(h->force, i->force);
-	// of an elastic contact: none pulls, and none is without overlap
+	// an elastic contact never pulls, and has no force without overlap
 	h->wrong = fmax(h->wrong, i->gap > 0 ? fabs(i->force) : -i->force);
 	h->now = i->force == 0 && h->at.force == 0
 	             ? 0
@@ -316,7 +316,7 @@ static void line_take(void *of, int signal, const struct pound_instant *instant)
 	lines->line[lines->n++] = (struct floor_line){instant->time, instant->v[0], instant->acceleration[0]};
 }
 
-/* With the jumps that rigid impacts make of the velocity. */
+/* Includes rigid impacts, where the velocity jumps. */
 static void histories_of_every_contact_model_give_the_spectrum_within_half_a_percent(void **state)
 {
 	(void)state;

@@ -1,8 +1,8 @@
 /* unit_row_results.c - rows of buildings from documents to results.
  *
- * 1. Known answers of seven rows, by two independent programs of 113-bit arithmetic.
- * 2. One-story rows beside two oscillators, which another march follows.
- * 3. What holds without an oracle: mirrored rows, equal buildings, scaling. */
+ * 1. Known answers of seven rows, by two independent programs with 113-bit arithmetic.
+ * 2. One-story rows against two oscillators, which another solver integrates.
+ * 3. Invariants without an oracle: mirrored rows, equal buildings, scaling. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 #include "tests/support/check.h"
 #include "tests/support/study_documents.h"
 
-/* Relative, beside the largest number of its list: the digits of the known answers. */
+/* Relative to the largest number of the list: the digits of the known answers. */
 static const double KNOWN = 1e-12;
 
 enum { VALUES = 8 };
@@ -35,7 +35,7 @@ static char *json_of_result(const char *document)
 	return json;
 }
 
-/* The result of a document, run to its end. */
+/* Runs a document and returns its result. */
 static struct reading *result_of(const char *document)
 {
 	char *json = json_of_result(document);
@@ -166,7 +166,7 @@ static void rows_have_their_known_answers(void **state)
 
 /* ---- one story ---- */
 
-/* Two oscillators and the same as buildings: %s is their law. */
+/* Two oscillators, and the same as buildings; %s is their law. */
 #define ONE_STOREY "\"contact\": {\"gap_m\": 0.003, \"restitution\": 0.55}, " HARMONIC(1.9, 4, 3)
 #define LEFT       "\"mass_kg\": 1e5, \"frequency_hz\": 2, \"damping_ratio\": 0.04"
 #define RIGHT      "\"mass_kg\": 1.7e5, \"frequency_hz\": 3.1"
@@ -241,7 +241,7 @@ static void equal_buildings_never_touch_with_force(void **state)
 		assert_true(reading_number(result, "/signals/0/contacts/%d/impulse_max_n_s", k) == 0);
 	assert_true(reading_number(result, "/work/moving_alike") == 1);
 	assert_true(reading_number(result, "/work/pounding_runs/run") == 0);
-	// the second building is that of the first: its responses without pounding are made once
+	// the second building equals the first: its responses without pounding are computed once
 	assert_true(reading_number(result, "/work/free_runs/asked") == 2);
 	assert_true(reading_number(result, "/work/free_runs/run") == 1);
 	for (int i = 0; i < 3; i++)
@@ -265,7 +265,7 @@ static void a_wide_gap_is_never_closed(void **state)
 	free(wide);
 }
 
-/* A row from right to left under the motion from right to left. */
+/* A row in reversed order under the reversed motion. */
 static void a_mirrored_row_has_mirrored_results(void **state)
 {
 	(void)state;
@@ -299,7 +299,7 @@ static void a_mirrored_row_has_mirrored_results(void **state)
 	reading_close(b);
 }
 
-/* Linear: motion and gaps times four, all displacements times four. */
+/* Linear: ground motion and gaps times four give displacements times four. */
 static void a_linear_row_scales(void **state)
 {
 	(void)state;
@@ -317,7 +317,7 @@ static void a_linear_row_scales(void **state)
 	free(stronger);
 }
 
-/* A number of one storey, of all of them, their count, a level and a gap of one contact: each cell is that of a document. */
+/* A property of one story, of all stories, their number, a level, and the gap of one contact: each cell equals its document. */
 static void what_a_sweep_varies_is_what_a_document_says(void **state)
 {
 	(void)state;
@@ -370,7 +370,7 @@ static void what_a_sweep_varies_is_what_a_document_says(void **state)
 	}
 }
 
-/* A sensitivity study has an output for every place, with the building and the story; its rows are those of documents. */
+/* A sensitivity study has an output for every place, named by building and story; its rows equal single documents. */
 static void places_are_outputs(void **state)
 {
 	(void)state;
@@ -402,7 +402,7 @@ static void places_are_outputs(void **state)
 		const double storey = reading_number(result, "/cells/0/outputs/%d/storey", o);
 		assert_true(storey == outputs[o].storey || (isnan(storey) && isnan(outputs[o].storey)));
 		assert_true(reading_number(result, "/cells/0/outputs/%d/mean", o) > 0);
-		// one input explains all, and half the sample step gives the same
+		// one input explains all of the variance, and half the sample step gives the same
 		check_near(reading_number(result, "/cells/0/outputs/%d/inputs/0/ST_raw", o), 1, 0.9);
 		assert_true(reading_number(result, "/cells/0/outputs/%d/accuracy/runs_checked", o) > 0);
 		assert_true(reading_number(result, "/cells/0/outputs/%d/accuracy/difference_largest", o) < 1e-10);

@@ -1,4 +1,4 @@
-/* unit_separation_result.c - studies of separation: the gaps that runs without contact need, against runs with contact. */
+/* unit_separation_result.c - separation studies: gaps needed from runs without contact, against runs with contact. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 
 enum { SIGNALS = 60, RECORDS = 20 };
 
-/* Brute force: every signal with contact, at every gap and peak acceleration. */
+/* Brute force: every signal with contact, for every gap and peak acceleration. */
 static void the_result_is_what_brute_force_counts(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic"};
@@ -34,7 +34,7 @@ static void the_result_is_what_brute_force_counts(void **state)
 			         "\"/excitation/peak_m_s2\", \"values\": [0.5, 1]}]}",
 			         scene);
 			struct reading *r = results_of_study(document);
-			// nothing is run with contact
+			// no run has contact
 			check_near(reading_number(r, "/work/pounding_runs/run"), 0, 0);
 			assert_true(reading_count(r, "/cells/1/pounding") >= 15);
 			for (int cell = 0; cell < 2; cell++)
@@ -110,13 +110,14 @@ static void a_step_of_acceleration_needs_its_closed_form(void **state)
 	reading_close(r);
 }
 
-/* A cycle of a sin W t under factors 1 to 20, undamped, w_1 = 2 W, w_2 = 3 W.  With x = W t
+/* A cycle of a sin W t with factors 1 to 20, undamped, w_1 = 2 W, w_2 = 3 W.  With x = W t
  *
  *   u_i = -a/(w_i^2 - W^2) (sin x - W/w_i sin (w_i x/W))
  *   u_1 - u_2 = -a/W^2 s ((1 - c)/3 - s^2/6),   s = sin x, c = cos x
  *
- * is largest where 3 c^2 - c - 2 = 0: c = -2/3, s^2 = 5/9; u_1 where c = -1/2, u_2 where s = 1.  A line between samples has the share
- * (sin(pi/n)/(pi/n))^2 of the sine, and harmonics from n - 1 on that move no body by more than 4/n^3 of it. */
+ * is largest where 3 c^2 - c - 2 = 0: c = -2/3, s^2 = 5/9; u_1 where c = -1/2, u_2 where s = 1.  Linear interpolation
+ * between samples has the fraction (sin(pi/n)/(pi/n))^2 of the sine, and harmonics from n - 1 on, which move no body
+ * by more than 4/n^3 of it. */
 static void suite_of_sines_check(const char *directions, int each, double width[RECORDS + 1])
 {
 	enum { N = 200 };
@@ -157,7 +158,7 @@ static void suite_of_sines_check(const char *directions, int each, double width[
 	check_near(reading_number(r, "/cells/0/gap_needed/standard_deviation_m") /
 	               (sqrt((RECORDS * RECORDS - 1) / 12.0 * runs / (runs - 1)) * one),
 	           1, near);
-	// with a gap between those that records k and k + 1 need, all behind k pound
+	// at a gap between those needed by records k and k + 1, all records after k pound
 	for (int k = 0; k <= RECORDS; k++) {
 		check_near(reading_number(r, "/cells/0/pounding/%d/probability", k), (double)(RECORDS - k) / RECORDS,
 		           1e-15);
@@ -177,12 +178,12 @@ static void a_suite_of_sines_needs_its_closed_forms(void **state)
 	double one[RECORDS + 1], both[RECORDS + 1];
 	suite_of_sines_check("one", 1, one);
 	suite_of_sines_check("both", 2, both);
-	// both directions need the same gap: they say no more than one
+	// both directions need the same gap, so the second adds no information
 	for (int k = 0; k <= RECORDS; k++)
 		assert_true(both[k] >= one[k] * (1 - 1e-12));
 }
 
-/* With uncertain structures the runs are those of A and B, and the gap needed has indices. */
+/* With uncertain structures the runs are samples A and B of the design, and the gap needed has indices. */
 static void with_inputs_the_runs_are_those_of_the_design(void **state)
 {
 	(void)state;
@@ -200,7 +201,7 @@ static void with_inputs_the_runs_are_those_of_the_design(void **state)
 	struct reading *indices = results_of_study(document);
 	check_near(reading_number(r, "/cells/0/gap_needed/runs"), 64 * 2 * 2, 0);
 	check_near(reading_number(r, "/cells/0/gap_needed/independent"), 64, 0);
-	// the mean over A and B is the same in both
+	// the mean over A and B is the same in both results
 	check_near(reading_number(r, "/cells/0/gap_needed/mean_m") /
 	               reading_number(indices, "/cells/0/outputs/0/mean"),
 	           1, 1e-13);
@@ -212,7 +213,7 @@ static void with_inputs_the_runs_are_those_of_the_design(void **state)
 	reading_close(indices);
 }
 
-/* Linear bodies: gaps grow with the intensity, so a curve over ln x is that of the gaps over ln g. */
+/* Linear bodies: gaps are proportional to the intensity, so a curve over ln x is the distribution of the gaps over ln g. */
 static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 {
 	(void)state;
@@ -229,7 +230,8 @@ static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 	for (int set = 0; set < 2; set++) {
 		const double median = reading_number(r, "/fragility/%d/curves/0/median", set);
 		const double twice = reading_number(r, "/fragility/%d/curves/1/median", set);
-		// intensities go in steps of 2: twice the gap has the same counts one step on, but for those at the ends
+		// successive intensities differ by a factor of 2: at twice the gap the counts shift by one intensity, except
+		// at the ends
 		assert_true(twice / median > 1.9 && twice / median < 2.1);
 		const double low = reading_number(r, "/fragility/%d/curves/0/median_low", set),
 		             high = reading_number(r, "/fragility/%d/curves/0/median_high", set);
@@ -240,14 +242,14 @@ static void a_swept_intensity_has_fragility_curves_and_rates(void **state)
 		assert_true(gap > 0.005 && gap < 0.2);
 		assert_true(reading_number(r, "/fragility/%d/return_periods/0/low_m", set) <= gap);
 	}
-	// less damping, larger gaps: weaker motions pound
+	// less damping, larger gaps: weaker motions lead to pounding
 	assert_true(reading_number(r, "/fragility/1/curves/0/median") <
 	            reading_number(r, "/fragility/0/curves/0/median"));
 	check_near(reading_number(r, "/fragility/1/sweep/~1oscillators~10~1damping_ratio"), 0.02, 0);
 	reading_close(r);
 }
 
-/* One-story buildings are oscillators, from both runs of them together without contact; a wall stands on the right of the last. */
+/* One-story buildings equal oscillators, run once together without contact; a wall is to the right of the last. */
 static void each_gap_of_a_row_is_that_of_its_pair(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic"};
@@ -306,7 +308,7 @@ static void each_gap_of_a_row_is_that_of_its_pair(void **state)
 	printf("# gaps of one-story rows as those of pairs to %.1e\n", most);
 }
 
-/* Brute force: with one contact alone a signal pounds exactly where it needs more than the gap. */
+/* Brute force: with one contact only, a signal pounds exactly if it needs more than the gap. */
 static void each_gap_of_a_row_is_what_brute_force_counts(void **state)
 {
 	static const char *const laws[] = {"linear", "elastoplastic"};
@@ -346,7 +348,7 @@ static void each_gap_of_a_row_is_what_brute_force_counts(void **state)
 	assert_true(between > 5);
 }
 
-/* A largest displacement at a level is that of its floor, which other marches find; pounding at listed gaps in the same study. */
+/* A largest displacement at a level is that of its floor in separate runs; pounding at listed gaps in the same study. */
 static void levels_of_a_row_are_its_floors(void **state)
 {
 	static const char scene[] = "\"buildings\": [{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 2}, "
@@ -387,7 +389,7 @@ static void levels_of_a_row_are_its_floors(void **state)
 	reading_close(r);
 }
 
-/* Bodies that yield are run once, both together: their largest displacements are those of each alone. */
+/* Yielding bodies are run once, both together: the largest displacements equal those of separate runs. */
 static void bodies_that_yield_are_run_once(void **state)
 {
 	static const char *const laws[] = {

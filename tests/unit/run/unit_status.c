@@ -1,6 +1,6 @@
-/* unit_status.c - runs without a result: what is left out, what is said, and when a study as a whole has failed.
+/* unit_status.c - failed runs: what is left out, what is reported, and when a whole study fails.
  *
- * The linker puts __wrap_gsl_odeiv2_driver_alloc_scaled_new in the place of GSL's own. */
+ * The linker replaces GSL's function by __wrap_gsl_odeiv2_driver_alloc_scaled_new. */
 #include <gsl/gsl_odeiv2.h>
 #include <math.h>
 #include <string.h>
@@ -12,17 +12,17 @@
 #include "tests/support/scenes.h"
 #include "tests/support/study_documents.h"
 
-/* Steps of 0.01 s are too long for anything above 1 / (pi 0.01) = 31.8 Hz. */
+/* Steps of 0.01 s are too long for frequencies above 1 / (pi 0.01) = 31.8 Hz. */
 #define STEPS_TOO_LONG "\"solver\": {\"method\": \"central_difference\", \"step_s\": 0.01}"
 static const char too_long[] = "the steps of the solver are too long for this scene";
 
-// a stiff contact throws bodies that touch out of all bounds; 2 of the 5 motions do not bring them to
+// in stiff contact the bodies move out of all bounds; 2 of the 5 motions do not lead to contact
 static const char some_signals[] =
     "{\"kind\": \"response\", " STEPS_TOO_LONG ", \"scene\": {"
     "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
     "\"contact\": {\"stiffness_ratio\": 1e4, \"gap_m\": 0.0115}, \"excitation\": {\"signals\": 5}}}";
 
-// some samples of the first cell are beyond the limit, all of the second
+// in the first cell some samples are above the limit, in the second all
 static const char some_rows[] = "{\"kind\": \"sensitivity\", " STEPS_TOO_LONG ", \"scene\": {"
                                 "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
                                 "\"contact\": {\"stiffness_ratio\": 0.01}, \"excitation\": {\"signals\": 2}},"
@@ -33,7 +33,7 @@ static const char some_rows[] = "{\"kind\": \"sensitivity\", " STEPS_TOO_LONG ",
                                 "\"sweep\": [{\"path\": \"/oscillators/1/frequency_hz\", \"values\": [3, "
                                 "100]}], \"design\": {\"rows\": 40}}";
 
-// the ground throws a ball without losses at a wall: 20 contacts a second for 1e5 s, between two samples
+// a body bounces on a wall without energy loss: 20 contacts per second for 1e5 s, between two samples
 static const char chatters[] =
     "{\"kind\": \"response\", \"solver\": {\"method\": \"adaptive\", \"tolerance\": 1e-4}, \"scene\": {"
     "\"oscillators\": [{\"frequency_hz\": 2, \"damping_ratio\": 0}, {\"rigid_wall\": true}],"
@@ -42,7 +42,7 @@ static const char chatters[] =
 
 /* Computes a study in one thread.
  *
- * Returns  value   the result read, and in json its bytes; NULL: it failed, and status says why
+ * Returns  value   the parsed result, and its bytes in json; NULL: the study failed for the reason in status
  */
 static struct reading *computed(const char *document, char **json, enum pound_status *status)
 {
@@ -96,7 +96,7 @@ static void outputs_of_a_response_are_of_the_signals_that_have_a_result(void **s
 	for (int i = 0; i < 5; i++)
 		n += isnan(reading_number(r, "/signals/%d/contact_count", i));
 	assert_int_equal(n, 3);
-	// the others never touch
+	// the other runs have no contact
 	check_near(reading_number(r, "/outputs/force_amplification"), 1, 0);
 	check_near(reading_number(r, "/outputs/impulse"), 0, 0);
 	assert_string_equal(reading_text(r, "/note"),
@@ -109,15 +109,15 @@ static void rows_with_a_failed_run_are_dropped_whole_and_a_cell_without_one_says
 	(void)state;
 	struct reading *r = succeeded(some_rows);
 	double runs = reading_number(r, "/cells/0/runs"), first = reading_number(r, "/cells/0/runs_failed");
-	// f_1 is beyond the limit in one of ten samples of A and of B
+	// f_1 is above the limit in one of ten samples of A and of B
 	check_near(runs, 40 * 4 * 2, 0);
 	assert_true(first > 0 && first < runs / 4);
 	double dropped = reading_number(r, "/cells/0/rows_dropped");
-	// a value of A is in the samples A and B with A's other column, a value of B likewise: two samples, two signals
+	// a value of A is in sample A and in A with the other column from B, and likewise for B: two samples, two signals
 	assert_true(dropped >= first / 8 && dropped <= first / 4);
 	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/mean")));
 	assert_true(isfinite(reading_number(r, "/cells/0/outputs/0/inputs/1/ST")));
-	// the worst of what seven rows of forty can do
+	// the largest effect that seven of forty rows can have
 	double bound = reading_number(r, "/cells/0/outputs/0/accuracy/errors/failed_rows");
 	assert_true(bound > 0 && bound <= 1);
 	check_near(fmax(reading_number(r, "/cells/0/outputs/0/accuracy/inputs/0/S1_failed_rows"), bound), bound,
@@ -185,8 +185,8 @@ static void a_study_without_a_result_ends_with_the_reason_of_its_runs(void **sta
 	assert_string_equal(pound_status_error(POUND_NOMEM), "out of memory");
 }
 
-/* A body that its ground presses on a wall, in a contact without losses: its own swing never ends, and the stiffer it is, the
- * more steps follow it. */
+/* The ground presses a body on a wall, in a contact without energy loss: its oscillation never ends, and the stiffer
+ * the contact, the more steps it needs. */
 static const char swings[] =
     "{\"kind\": \"%s\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"rigid_wall\": true}], "
     "\"contact\": {\"stiffness_ratio\": %s, \"restitution\": 1}, \"excitation\": {\"type\": \"record\", "
@@ -206,7 +206,7 @@ static void a_run_whose_floor_cannot_be_followed_has_failed_for_a_named_reason(v
 	(void)state;
 	char document[1600], more[900];
 	snprintf(document, sizeof document, swings, "response", "1e20", "");
-	struct reading *r = succeeded(document); // the march can
+	struct reading *r = succeeded(document); // the exact solver can follow it
 	check_near(reading_number(r, "/runs_failed"), 0, 0);
 	reading_close(r);
 	snprintf(document, sizeof document, swings, "floor_spectrum", "1e20", swings_spectrum);
@@ -287,7 +287,7 @@ gsl_odeiv2_driver *__wrap_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_sy
                                                              const gsl_odeiv2_step_type *, double, double,
                                                              double, double, double, const double[]);
 
-static int until_starved = -1; /* allocations that GSL still gets before one that it does not get */
+static int until_starved = -1; /* allocations by GSL until one fails */
 
 gsl_odeiv2_driver *__wrap_gsl_odeiv2_driver_alloc_scaled_new(const gsl_odeiv2_system *system,
                                                              const gsl_odeiv2_step_type *type, double start,
@@ -318,10 +318,10 @@ static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(voi
 			assert_int_equal(status, POUND_NOMEM);
 		}
 	until_starved = -1;
-	// the second opinion and the adaptive solver, whose motions and histories each take two
+	// the second opinion and the adaptive solver, whose motions and histories need two each
 	assert_true(starved > 2 * 2 * 2);
 	for (int block = 0; block < pound_run_blocks(again); block++) {
-		// times of runs are measured, and there is no clock
+		// run times are not compared: the test has no clock
 		size_t size = sizeof(double) * pound_run_block_size(again, block);
 		assert_memory_equal(pound_run_block_values(again, block), pound_run_block_values(once, block), size);
 	}
@@ -330,7 +330,7 @@ static void want_of_memory_is_no_failed_run_and_the_block_may_be_tried_again(voi
 	study_free(study);
 }
 
-/* Signals beyond the first ones of a cell have a response without an energy balance, and say so. */
+/* In each cell only the first signals have an energy balance; the responses to the others show that they have none. */
 static void the_first_signals_of_each_cell_have_energy_balances(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* unit_stop.c - how soon a run ends when it is stopped, whatever it is at: each of the long loops, cut short at many times. */
+/* unit_stop.c - time from a stop request to the end of the run: each of the long loops, interrupted at many times. */
 #include <math.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -22,7 +22,7 @@
 	                      "5") ", " INPUT("/oscillators/1/frequency_hz", "f_2", "0.5", \
 	                                      "5") ", " INPUT("/contact/restitution", "eps", "0", "1") "], "
 
-/* What takes long, at so many rows of a design, or pulses; the second number is for make soak. */
+/* Long computations, with their number of rows or pulses; the second number is for make soak. */
 static const struct {
 	const char *what, *document;
 	int n[2];
@@ -50,7 +50,7 @@ static const struct {
      REDUCE},
 };
 
-/* Blocks as if they had been run. */
+/* Fills the blocks as if they had been run. */
 static void blocks_fill(struct pound_run *run)
 {
 	uint64_t x = 1;
@@ -59,7 +59,7 @@ static void blocks_fill(struct pound_run *run)
 		double *values = malloc(sizeof *values * n);
 		for (size_t k = 0; k < n; k++) {
 			x = x * 6364136223846793005u + 1442695040888963407u;
-			// the last are counts of failed runs
+			// the last values are counts of failed runs
 			values[k] = k < n - POUND_N_FAILURES ? 1 + (double)(x >> 11) * 0x1p-53 : 0;
 		}
 		pound_run_block_restore(run, b, values);
@@ -88,7 +88,7 @@ static void *tried(void *of)
 	return NULL;
 }
 
-/* Seconds from the word to the end, when it comes after so many others; -1: it had ended by itself. */
+/* Seconds from the stop request, which follows after `delay` seconds, to the end; -1: it ended before the request. */
 static double stopped_after(struct trial *trial, double delay)
 {
 	pthread_t thread;
@@ -112,7 +112,7 @@ static void what_takes_long_ends_soon_when_it_is_stopped(void **state)
 		int stopped = 0;
 		snprintf(document, sizeof document, CASES[i].document, CASES[i].n[check_soaks()]);
 		struct pound_study *study = study_documents_study(document);
-		study->design.resamples = study->n_inputs ? 400 : 0; // so that other loops have their share
+		study->design.resamples = study->n_inputs ? 400 : 0; // leaves time for the other loops
 		struct trial trial = {.study = study, .step = CASES[i].step};
 		if (trial.step != CREATE) {
 			trial.run = pound_run_create(study, 1);
@@ -131,7 +131,7 @@ static void what_takes_long_ends_soon_when_it_is_stopped(void **state)
 		}
 		check_report("while %s, %.2f s: stopped %d times, after %.0f ms at most", CASES[i].what, whole,
 		             stopped, 1e3 * longest);
-		// the others had ended by themselves
+		// the other runs ended before the request
 		assert_true(stopped > 0);
 		assert_true(longest <= 0.5);
 		pound_run_free(trial.run);

@@ -1,5 +1,5 @@
-/* unit_yield.c - yield displacements that give the target demand: corrections as a search, and a table of how often it ends
- * there.
+/* unit_yield.c - yield displacements for a target demand: the search by corrections, and a table of how often it
+ * reaches the target.
  *
  * The paper's ground motion; oscillators of 0.5 to 5 Hz, target demands of 1.5 to 6. */
 #include <float.h>
@@ -17,21 +17,22 @@
 static const double frequencies[] = {0.5, 0.7, 1, 1.4, 2, 2.5, 3, 4, 5}, targets[] = {1.5, 2, 3, 4, 6};
 enum { FREQUENCIES = 9, TARGETS = 5, SIGNALS = 20, ALL = FREQUENCIES * TARGETS * SIGNALS };
 
-/* Searches at whose target the demand jumps, by law.  A demand is continuous where the law's force depends continuously on its
- * history; else a small change of the yield displacement may change which way the body unloads. */
+/* Number of searches, by law, whose demand jumps at the target.  The demand is continuous if the law's force depends
+ * continuously on its history; otherwise a small change of the yield displacement may change the direction of
+ * unloading. */
 static const int jumps_known[SPECIMEN_LAWS] = {0};
 
-/* relative difference from the target demand at which a search ends, and the rounding of a demand's quotients */
+/* relative difference from the target demand at which a search ends, plus the rounding of a demand's quotients */
 static const double reached = 1e-6 + 8 * DBL_EPSILON;
 
-/* what is seen of the left bodies of all scenes of a law */
+/* results for the left bodies of all scenes of a law */
 struct seen {
 	int near, percent; /* within 1e-6, beyond 1 % */
 	double evaluations;
 	int64_t searches, jumps, missed;
 };
 
-/* The right body is the same, so that both are searched for alike. */
+/* A response study of one body; the right body is a rigid wall. */
 static struct pound_study *study_of(const char *law, int corrections, double frequency, double target)
 {
 	char document[600];
@@ -75,9 +76,9 @@ static struct seen seen_of(const char *law, int corrections)
 	return seen;
 }
 
-/* A continuous demand takes every value from 0, of a body that never yields, upwards: every target has a yield displacement.
- * Bisection would halve the bracket, of a factor of 2 or so, 40 times until a demand that changes by the millionth
- * power of it is within 1e-6. */
+/* A continuous demand takes every value from 0 (a body that never yields) upwards, so every target has a yield
+ * displacement.  Bisection would halve the bracket, initially a factor of about 2, 40 times until a demand that
+ * changes by its millionth power is within 1e-6. */
 static void a_search_ends_at_the_target_demand(void **state)
 {
 	(void)state;
@@ -98,7 +99,7 @@ static void a_search_ends_at_the_target_demand(void **state)
 		}
 }
 
-/* The march with the yield displacement that was found, given as a number, is the answer itself. */
+/* A response with the yield displacement of a search, given as a number, equals the result of the search. */
 static void a_yield_displacement_that_was_found_gives_the_same_response(void **state)
 {
 	(void)state;
@@ -119,7 +120,7 @@ static void a_yield_displacement_that_was_found_gives_the_same_response(void **s
 	}
 }
 
-/* A right body that no output needs a response of is searched for alike. */
+/* The search for a right body is the same if no output needs its response. */
 static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void **state)
 {
 	(void)state;
@@ -135,7 +136,7 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 	double mean[2];
 	for (int may_miss = 0; may_miss < 2; may_miss++) {
 		char filled[700];
-		// a gap is nothing beside the motion, but whether the bodies meet is to be found out
+		// the gap is negligible relative to the motion, but the solver must determine whether the bodies meet
 		snprintf(filled, sizeof filled, document, may_miss ? "1e-300" : "0");
 		struct pound_study *study = study_documents_study(filled);
 		struct pound_run *run = specimen_run(study);
@@ -144,7 +145,7 @@ static void what_is_asked_of_a_body_does_not_change_its_yield_displacement(void 
 		pound_run_free(run);
 		study_free(study);
 	}
-	check_near(mean[1], mean[0], 64 * 0x1p-52 * mean[0]); // steps to the gap round otherwise
+	check_near(mean[1], mean[0], 64 * 0x1p-52 * mean[0]); // steps to the gap round differently
 }
 
 static void a_body_that_never_moves_is_not_searched_for(void **state)
@@ -164,7 +165,7 @@ static void a_body_that_never_moves_is_not_searched_for(void **state)
 	study_free(study);
 }
 
-/* The document of a study with so many corrections. */
+/* The result document of a study with a number of corrections. */
 static struct reading *result_of(int corrections)
 {
 	struct pound_study *study = study_of("nonlinear_elastic", corrections, 1.4, 3);

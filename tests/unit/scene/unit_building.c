@@ -1,4 +1,4 @@
-/* unit_building.c - shear buildings as masses, springs and dashpots, beside closed forms. */
+/* unit_building.c - shear buildings as masses, springs and dashpots, against closed forms. */
 #include <math.h>
 #include <string.h>
 
@@ -59,7 +59,7 @@ static void a_profile_is_scaled_to_the_first_frequency(void **state)
 	check_near(storeys.stiffness[1] / storeys.stiffness[2], 1.2, 1e-14);
 }
 
-/* Of one story every form is 2 xi m w; of many, what the forms promise of modes 1 and 3: a0/(2 w) + a1 w/2 = xi. */
+/* With one story every form is 2 xi m w; with many, forms define the damping of modes 1 and 3: a0/(2 w) + a1 w/2 = xi. */
 static void damping_is_that_of_its_form(void **state)
 {
 	(void)state;
@@ -87,14 +87,14 @@ static void damping_is_that_of_its_form(void **state)
 	many = equal_storeys(3, damping_named("modal"));
 	pound_building_storeys(&many, &s);
 	assert_true(s.modal && s.dashpot[0] == 0);
-	// two modes of a building of two stories are its first and its last
+	// the two modes of a building of two stories are its first and its last
 	many = equal_storeys(2, damping_named("rayleigh"));
 	pound_building_storeys(&many, &s);
 	check_near(s.mass_damping / (2 * closed(2, 2)) + s.dashpot[0] / s.stiffness[0] * closed(2, 2) / 2, 0.05,
 	           1e-13);
 }
 
-/* Every form but that of the stories has the document's ratio in the first mode. */
+/* Every form except that of the stories has the document's ratio in the first mode. */
 static void the_first_mode_has_the_damping_of_its_form(void **state)
 {
 	(void)state;

@@ -1,8 +1,8 @@
-/* unit_contact.c - contact models: calibrations against tables of known answers by other programs and against their equations,
- * branches against isolated impacts, whose restitution, duration and largest force are known.
+/* unit_contact.c - contact models: calibrations against tables computed by other programs and against their
+ * equations; branches against isolated impacts of known restitution, duration and largest force.
  *
- * Isolated impacts are integrated here by Runge-Kutta with steps that begin small, because p^1.5 has no third derivative where
- * a contact begins: the tests of the solvers have more digits. */
+ * Isolated impacts are integrated here by Runge-Kutta steps that are short at first, because p^1.5 has no third
+ * derivative at the start of a contact: the tests of the solvers have more digits. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 static void the_damping_ratio_is_the_one_of_the_known_answers(void **state)
 {
 	(void)state;
-	// of e = 0, 0.1 .. 1 to nine decimals
+	// for e = 0, 0.1 .. 1, to nine decimals
 	static const double zeta[] = {1,          .591155034, .455949811, .357857131, .279997993, .215453762,
 	                              .160493047, .112808451, .070850300, .033518449, 0};
 	for (int tenth = 0; tenth <= 10; tenth++)
@@ -37,7 +37,7 @@ static void the_damping_ratio_falls_from_one_to_zero_without_a_step(void **state
 	(void)state;
 	double before = pound_contact_damping_ratio(0, 0);
 	assert_true(before == 1);
-	// the smallest numbers have few bits and a logarithm all the same
+	// subnormal numbers have few bits, but a logarithm
 	for (double e = DBL_TRUE_MIN; e < 1; e *= 1.5 + DBL_TRUE_MIN / e) {
 		double zeta = pound_contact_damping_ratio(0, e);
 		assert_true(zeta > 0 && zeta <= before);
@@ -76,7 +76,7 @@ static struct pound_contact contact_of(const char *model, const char *calibratio
 	return contact;
 }
 
-/* z, x or D: the dashpot where K and m are 1. */
+/* The dashpot z, x or D for K = m = 1. */
 static double dashpot(const char *model, const char *calibration, double restitution, bool tension)
 {
 	static const struct pound_contact_place unit = {1, 1, 1};
@@ -106,8 +106,8 @@ static real released_at_no_force(real z)
 	return expl(-z / w * (z < 1 ? 3.14159265358979323846L - 2 * asinl(z) : logl((z + w) / (z - w))));
 }
 
-/* e of D (1 + e) = ln((1 + D)/(1 - D e)), by bisection: the right side less the left one, over e, goes from above to below to
- * above 0, and e = 0 is before its first root. */
+/* e from D (1 + e) = ln((1 + D)/(1 - D e)), by bisection: between e = 0 and the root the right side minus the left
+ * one is negative; beyond the root it is positive. */
 static real by_ratio(real D)
 {
 	real low = 0, high = fminl(1, 1 / D);
@@ -163,7 +163,7 @@ static void calibrations_are_those_of_the_table_of_known_answers(void **state)
 		check_near((double)by_ratio(dashpot("hertz_damp", "classic", e, true)), rows[i].e_ratio,
 		           digits * rows[i].e_ratio);
 	}
-	// no force may pull where it parts at no overlap: both calibrations are one
+	// a contact with tension ends at zero overlap: both calibrations agree
 	check_near(dashpot("kelvin_voigt", "exact", 0.3, true), dashpot("kelvin_voigt", "classic", 0.3, true), 0);
 	check_near(dashpot("damped_hertz", "classic", 0.3, true),
 	           ROOT_5 / 2 * dashpot("kelvin_voigt", "classic", 0.3, true), DBL_EPSILON);
@@ -173,7 +173,7 @@ static void exact_dashpots_give_the_restitution_that_was_asked_for(void **state)
 {
 	(void)state;
 	for (double e = 1 - 0x1p-20; e > 1e-6; e *= 0.97) {
-		// what a rounding of the dashpot and of the logarithm of e changes; D ends near 1/e, where little is left of 1 - D e
+		// effect of a rounding of the dashpot and of the logarithm of e; D approaches 1/e, where 1 - D e cancels
 		const double rounding = 16 * DBL_EPSILON * (1 + fabs(log(e)));
 		check_near((double)approach_only(dashpot("modified_kelvin_voigt", "exact", e, true)), e,
 		           rounding * e);
@@ -230,7 +230,7 @@ static void the_largest_overlap_of_both_springs_is_one_at_the_reference_speed(vo
 		const double K = pound_contact_law(&contact, &place).stiffness;
 		const double linear = s * sqrt(m / k), power = pow(5 * m * s * s / (4 * K), 0.4);
 		check_near(power, linear, 16 * DBL_EPSILON * linear);
-		// over a mass
+		// per mass
 		place =
 		    (struct pound_contact_place){.stiffness = k / 100 / 1e5, .inverse_mass = 1e5 / m, .mass = 1e5};
 		check_near(pound_contact_law(&contact, &place).stiffness, K / 1e5, 16 * DBL_EPSILON * K / 1e5);
@@ -269,7 +269,7 @@ static void runge_kutta(const struct pound_touch *touch, double m, double h, con
 	}
 }
 
-/* How far a state is beyond the first edge of its branch; 0: it is on it. */
+/* How far a state is beyond the first edge of its branch; 0: at the edge. */
 static double beyond(const struct pound_contact_law *law, const struct pound_touch *touch, const double y[2])
 {
 	double most = touch->on.low - y[0];
@@ -281,7 +281,7 @@ static double beyond(const struct pound_contact_law *law, const struct pound_tou
 	return most;
 }
 
-/* Whether a branch ends in an edge between branches; the next one. */
+/* Passes to the next branch if the state is at an edge between branches; whether it was. */
 static bool passed(const struct pound_contact_law *law, struct pound_touch *touch, const double y[2])
 {
 	if (y[0] >= touch->on.high)
@@ -295,7 +295,7 @@ static bool passed(const struct pound_contact_law *law, struct pound_touch *touc
 	return true;
 }
 
-/* Two free bodies of effective mass m that meet with speed v. */
+/* Two free bodies of effective mass m that collide with speed v. */
 static struct impact impact(const struct pound_contact_law *law, double m, double v, double h)
 {
 	double y[2] = {0, v}, end[2], time = 0;
@@ -303,7 +303,7 @@ static struct impact impact(const struct pound_contact_law *law, double m, doubl
 	struct pound_touch touch;
 	pound_contact_begin(law, &touch, v);
 	for (;;) {
-		// near no overlap a power needs steps that are short beside the time from there
+		// near zero overlap a power law needs steps that are short relative to the time since contact began
 		double step = fmin(h, 1e-2 * y[0] / fabs(y[1]) + 1e-5 * h);
 		runge_kutta(&touch, m, step, y, end);
 		if (beyond(law, &touch, end) > 0) {
@@ -335,7 +335,7 @@ static void isolated_impacts_are_those_of_the_known_answers(void **state)
 	static const struct {
 		const char *model;
 		struct pound_contact_law law; // its dashpot is z, x or D
-		struct impact known;          // 0: not known
+		struct impact known;          // 0: unknown
 	} cases[] = {
 	    {"linear", {.stiffness = 1e5, .tension = true}, {1, .00811155735194722, 77.4596669241483}},
 	    {"modified_kelvin_voigt",
@@ -358,21 +358,21 @@ static void isolated_impacts_are_those_of_the_known_answers(void **state)
 		if (!pound_contact_reads(law.model, "speed_floor_m_s"))
 			law.dashpot *= 2 * sqrt(law.stiffness * m);
 		const struct impact coarse = impact(&law, m, v, 4e-6), fine = impact(&law, m, v, 2e-6);
-		// at least half of the error of the coarse steps goes with half the step; roundings of 1e4 steps
+		// the coarse steps have at least twice the error of the fine ones; rounding errors of 1e4 steps
 		const double rounding = 1e-12;
 		check_near(fine.restitution, cases[i].known.restitution,
 		           2 * fabs(fine.restitution - coarse.restitution) + rounding);
 		if (cases[i].known.duration > 0)
 			check_near(fine.duration, cases[i].known.duration,
 			           2 * fabs(fine.duration - coarse.duration) + rounding);
-		// the largest force is that of a step's end, less than half a step off the top of a parabola
+		// the largest force is taken at the end of a step, at most half a step from the peak of a parabola
 		if (cases[i].known.force_max > 0)
 			check_near(fine.force_max, cases[i].known.force_max, 1e-6 * cases[i].known.force_max);
 		assert_true(fabs(fine.restitution - coarse.restitution) < 1e-7);
 	}
 }
 
-/* F over p, up and down and up again: the path that the overlap takes, and the force of each place on it. */
+/* F over p, loading, unloading and loading again: the path of the overlap, and the force at each point. */
 static void the_bilinear_branches_follow_its_two_lines(void **state)
 {
 	(void)state;

@@ -1,4 +1,5 @@
-/* unit_law.c - the laws as pieces: continuous in force, right loops, right periods, found without an integrator. */
+/* unit_law.c - the branches of the laws: continuous force, correct loops and periods, by driving the laws without an
+ * integrator. */
 #include "tests/support/check.h"
 
 #include <math.h>
@@ -10,7 +11,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* A displacement-driven test: follows a list of turning points and returns the work done, piece by piece exactly. */
+/* A displacement-driven test: follows a list of reversals and returns the work done, exactly for each branch. */
 struct push {
 	struct pound_backbone backbone;
 	struct pound_law_state at;
@@ -118,7 +119,7 @@ static void each_side_of_the_origin_oriented_law_remembers_its_own_farthest_poin
 	push_start(&push, law_row("origin_oriented"), 1, 0.05);
 	push_to(&push, 3);
 	push_to(&push, -0.5);
-	check_near(push.force, -0.5, 1e-16); // the other side never yielded
+	check_near(push.force, -0.5, 1e-16); // the other side has not yielded
 	push_to(&push, 1.5);
 	check_near(push.force, 1.5 * (0.05 * 3 + 0.95) / 3, 1e-15);
 	push_to(&push, 4);
@@ -150,13 +151,13 @@ static void hardening_one_is_linear_whatever_the_law(void **state)
 	}
 }
 
-/* Period of a free vibration of amplitude mu, in linear periods; `about` is right to a third. */
+/* Period of a free vibration of amplitude mu, in linear periods; `about` is an estimate within 30 %. */
 static double period(int law, double mu, double about)
 {
 	static _Alignas(64) char scratch[POUND_EXACT_SCRATCH];
 	enum { SAMPLES = 1001 };
 	static const double still[SAMPLES];
-	// bisect on the end of the motion: from the middle, the displacement rises through 0 after one period
+	// bisection of the duration: from the middle, the displacement rises through 0 after one period
 	double low = 0.7 * about, high = 1.3 * about;
 	while (high - low > 1e-13) {
 		double middle = 0.5 * (low + high);
@@ -199,16 +200,16 @@ static void every_law_is_known_to_the_oracle_and_to_the_random_scenes_of_the_tes
 	assert_null(pound_law_name(SPECIMEN_LAWS));
 }
 
-/* What is given back is what is done from there to no force. */
+/* The energy that a law gives back is the work from the current state to zero force. */
 static void a_law_gives_back_what_it_does_on_the_way_to_no_force(void **state)
 {
 	static const struct {
 		const char *law;
-		double hardening, to, back; /* displacements, the latter without force */
+		double hardening, to, back; /* displacements; `back` has zero force */
 	} cases[] = {{"linear", 0, 3, 0},
 	             {"elastoplastic", 0, 3, 2},
 	             {"elastoplastic", 0.2, -3, -1.6},
-	             {"elastoplastic", 0.5, 9, 1}, // r = 5 is 3 beyond 2 k d_y: it yields on the way
+	             {"elastoplastic", 0.5, 9, 1}, // r = 5 is 3 above 2 k d_y: it yields during unloading
 	             {"nonlinear_elastic", 0.2, 3, 0},
 	             {"origin_oriented", 0.2, -4, 0}};
 	(void)state;

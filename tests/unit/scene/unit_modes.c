@@ -1,4 +1,4 @@
-/* unit_modes.c - modes of shear buildings against closed forms, orthogonality and their own equation. */
+/* unit_modes.c - modes of shear buildings against closed forms, orthogonality and the eigenvalue equation. */
 #include "engine/scene/modes.h"
 #include "tests/support/check.h"
 
@@ -21,7 +21,7 @@ static void equal_floors_have_known_frequencies(void **state)
 	}
 }
 
-/* A building of random floors; `stiff` stories are a million times stiffer. */
+/* A building with random floors; `stiff` stories are a million times stiffer. */
 static void building_random(int number, int n, double *mass, double *stiffness, bool stiff)
 {
 	for (int i = 0; i < n; i++) {
@@ -60,7 +60,8 @@ static void shapes_satisfy_their_equation(void **state)
 static void stiff_stories_leave_the_first_frequency_its_digits(void **state)
 {
 	(void)state;
-	// two floors joined by a rigid story, nearly, on a soft one: w^2 = k/(m1 + m2) (1 - k m2^2/(K (m1 + m2)^2) + ...)
+	// two floors with a nearly rigid story between them, on a soft story: w^2 = k/(m1 + m2) (1 - k m2^2/(K (m1 +
+	// m2)^2) + ...)
 	const double mass[2] = {1, 2}, stiffness[2] = {9, 9e9};
 	double w[2];
 	pound_modes_frequencies(2, mass, stiffness, w);

@@ -9,7 +9,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* gaps 1, 2, ... n of as many independent runs */
+/* gaps 1, 2, ... n from n independent runs */
 static struct pound_needed whole(double *gap, int n)
 {
 	for (int k = 0; k < n; k++)
@@ -27,9 +27,9 @@ static void pounding_is_counted_run_by_run(void **state)
 	assert_int_equal(count.pounding, 2);
 	assert_int_equal(count.runs, 3);
 	assert_int_equal(count.clusters, 2);
-	// the bodies that just touch do not press each other
+	// at a gap equal to the gap needed the bodies touch without contact force
 	assert_int_equal(at.pounding, 1);
-	// of sorted gaps by bisection
+	// counts from sorted gaps by bisection
 	double sorted[6];
 	struct pound_needed single = {.n_clusters = 6, .size = 1, .gap = gap};
 	for (int k = 0; k < 8; k++) {
@@ -47,7 +47,8 @@ static void pounding_is_counted_run_by_run(void **state)
 	    pound_needed_probability(&(struct pound_needed){.n_clusters = 1, .size = 1, .gap = none}, 0).value));
 }
 
-/* Closed forms: none of n has (0.025)^(1/n) above, and the limits are where tails of the binomial sum are 0.025. */
+/* Clopper-Pearson: at each limit a tail of the binomial sum is 0.025; without pounding in n runs the upper limit is
+ * 1 - 0.025^(1/n). */
 static void the_band_is_the_exact_binomial_one(void **state)
 {
 	(void)state;
@@ -60,7 +61,7 @@ static void the_band_is_the_exact_binomial_one(void **state)
 			const struct pound_estimate p = pound_needed_probability(&needed, n - k + 0.5);
 			double above = 0, below = 0, term_low = 1, term_high = 1;
 			check_near(p.value, (double)k / n, 1e-15);
-			// sums of binomial terms by their ratios, in logarithms at the start
+			// binomial terms from logarithms
 			const double low = p.low, high = p.high;
 			for (int j = 0; j <= n; j++) {
 				const double c = lgamma(n + 1.0) - lgamma(j + 1.0) - lgamma(n - j + 1.0);
@@ -77,7 +78,7 @@ static void the_band_is_the_exact_binomial_one(void **state)
 	}
 }
 
-/* Every run twice: the interval is that of half as many; all different clusters of one run: exact again. */
+/* If every run occurs twice, the interval is the same as from half as many runs, but for a factor. */
 static void clusters_of_equal_runs_count_once(void **state)
 {
 	(void)state;
@@ -88,14 +89,14 @@ static void clusters_of_equal_runs_count_once(void **state)
 	const struct pound_estimate one = pound_needed_probability(&needed, 30.5),
 	                            two = pound_needed_probability(&pairs, 30.5);
 	check_near(two.value, one.value, 1e-15);
-	// n_eff is (clusters - 1) and a factor of two quantiles of t near 1
+	// n_eff is (clusters - 1) times a squared ratio of two quantiles of t near 1
 	const double width = (two.high - two.low) / (one.high - one.low);
 	assert_true(width > 1 && width < 1.06);
-	// without any scatter a cluster counts as one run
+	// without scatter a cluster counts as one run
 	check_near(pound_needed_probability(&pairs, 40).high, pound_needed_probability(&needed, 40).high, 1e-15);
 }
 
-/* Order statistics of n = 20 that hold the median with 95 %: the 6th and the 15th, in every book. */
+/* Order statistics of n = 20 that contain the median with 95 %: the 6th and the 15th, as in every textbook. */
 static void the_gap_for_a_probability_has_the_interval_of_order_statistics(void **state)
 {
 	(void)state;
@@ -107,7 +108,7 @@ static void the_gap_for_a_probability_has_the_interval_of_order_statistics(void 
 	check_near(g.value, 10, 0);
 	check_near(g.low, 6, 0);
 	check_near(g.high, 15, 0);
-	// 5 % of 20 runs is one run; no order statistic is above the quantile with 97.5 %
+	// 5 % of 20 runs is one run; no order statistic is an upper limit of the quantile with 97.5 %
 	g = pound_needed_gap(&needed, sorted, n, 0.05);
 	check_near(g.value, 19, 0);
 	assert_true(isnan(g.high) && g.low >= 15 && g.low <= 18);
@@ -126,7 +127,8 @@ static void the_gap_for_a_probability_has_the_interval_of_order_statistics(void 
 	assert_true(covered >= 0.935 * 2000);
 }
 
-/* Var and Cov of oscillators under the same white noise by the Lyapunov equation A P + P A' + b b' = 0, as linear equations. */
+/* Variances and covariance of oscillators under the same white noise by the Lyapunov equation A P + P A' + b b' = 0,
+ * solved as linear equations. */
 static void white_noise(const double w[2], const double xi[2], double *left, double *right, double *both)
 {
 	double a[4][4] = {{0}}, m[16][17] = {{0}};
@@ -170,7 +172,7 @@ static void the_correlation_is_that_of_white_noise(void **state)
 				white_noise(w, xi, &left, &right, &both);
 				const double rho = pound_rule_correlation(w, xi);
 				check_near(rho, both / sqrt(left * right), 1e-10);
-				// so the variance of the closing displacement is that of the double difference combination
+				// hence the variance of the closing displacement is that of the double difference combination
 				const double gap = pound_rule_gap(2, (const double[2]){sqrt(left), sqrt(right)}, rho);
 				check_near(gap * gap / (left + right), (left + right - 2 * both) / (left + right), 1e-9);
 			}
@@ -190,7 +192,7 @@ static void rules_are_ordered_and_meet_at_their_limits(void **state)
 
 enum { LEVELS = 6, RECORDS = 60 };
 
-/* Capacities of records in intensity, lognormal; a record needs a gap of 1 at its capacity, and in proportion below. */
+/* Capacities of records as intensities, lognormal; a record at its capacity needs a gap of 1, otherwise in proportion. */
 static void stripes_make(struct pound_stripes *stripes, struct pound_needed needed[LEVELS], double *gaps,
                          uint64_t *stream, bool scaled)
 {
@@ -229,7 +231,7 @@ static void a_fragility_curve_is_found_again_its_intervals_cover(void **state)
 		}
 		check_near(exp(median / fits), 1.2, 0.02);
 		check_near(dispersion / fits, 0.5, 0.03);
-		// 95 %, less 3 standard errors of 1.1 % and what few records take
+		// 95 %, less 3 standard errors of 1.1 % and an allowance for few records
 		assert_true(covered[0] > 0.9 * fits && covered[1] > 0.88 * fits);
 	}
 }
@@ -239,7 +241,7 @@ static struct pound_needed of_ten(const double *gap)
 	return (struct pound_needed){.n_clusters = 10, .size = 1, .gap = gap};
 }
 
-/* Two intensities have a curve through both points. */
+/* For two intensities the curve passes through both points. */
 static void two_points_are_on_the_curve_and_counts_without_one_have_none(void **state)
 {
 	(void)state;
@@ -254,13 +256,13 @@ static void two_points_are_on_the_curve_and_counts_without_one_have_none(void **
 	check_near(0.5 * erfc(-log(2 / fit.median.value) / fit.dispersion.value / sqrt(2)), 0.7, 1e-9);
 	stripes.needed = steep;
 	assert_true(isnan(pound_fragility_fit(&stripes, 1).median.value));
-	assert_true(isnan(pound_fragility_fit(&stripes, 3).median.value)); // none pounds
+	assert_true(isnan(pound_fragility_fit(&stripes, 3).median.value)); // no pounding
 	stripes.needed = falling;
 	assert_true(isnan(pound_fragility_fit(&stripes, 1).median.value));
 }
 
-/* lambda = 0.01 x^-2; every run at intensity x needs a gap x: pounding from x = g on has the rate 0.01 g^-2 where g is beyond an
- * intensity by half a step of the line between in ln x. */
+/* lambda = 0.01 x^-2; every run at intensity x needs a gap x: at a gap between two intensities the probability of pounding
+ * rises from 0 at the lower to 1 at the higher one, linearly in ln x. */
 static void the_rate_over_a_power_law_is_its_closed_form(void **state)
 {
 	(void)state;
@@ -274,7 +276,7 @@ static void the_rate_over_a_power_law_is_its_closed_form(void **state)
 		needed[i] = (struct pound_needed){.n_clusters = 1, .size = 1, .gap = &gap[i]};
 	}
 	const struct pound_stripes stripes = {N, x, needed};
-	// points of the hazard that are not the stripes
+	// points of the hazard curve differ from the intensities of the runs
 	const double points[] = {0.05, 0.3, 20}, rates[] = {0.01 / 0.0025, 0.01 / 0.09, 0.01 / 400};
 	const struct pound_hazard hazard = {3, points, rates};
 	const double beyond = pound_hazard_weights(&hazard, &stripes, weights);
@@ -291,7 +293,7 @@ static void the_rate_over_a_power_law_is_its_closed_form(void **state)
 		           1, 1e-11);
 	}
 	const struct pound_estimate g = pound_hazard_gap(&stripes, weights, beyond, 0.01, scratch);
-	// the smallest gap needed by any run at which the rate is at most that
+	// the smallest gap needed by any run for which the rate is at most the target
 	assert_true(pound_hazard_rate(&stripes, weights, beyond, g.value).value <= 0.01);
 	assert_true(pound_hazard_rate(&stripes, weights, beyond, g.value * 0.99).value > 0.01);
 	assert_true(isnan(pound_hazard_gap(&stripes, weights, beyond, 0.5 * beyond, scratch).value));

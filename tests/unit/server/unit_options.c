@@ -1,4 +1,4 @@
-/* Every option of poundd, as a flag and from the environment, and as server/server.md has it. */
+/* Every option of poundd, as a flag and from the environment, and as documented in server/server.md. */
 #include "server/options.h"
 
 #include <string.h>
@@ -6,7 +6,7 @@
 #include "tests/support/check.h"
 #include "tests/support/program.h"
 
-/* What poundd says to a value, by flag or environment. */
+/* The message of poundd for a value, by flag or environment. */
 static void refused(const struct option_row *row, const char *value, bool flag)
 {
 	char name[64], word[128];
@@ -59,7 +59,7 @@ static void what_an_option_does_not_take_is_refused_by_name(void **state)
 		for (int flag = 0; flag < 2; flag++) {
 			if (flag && !row->argument)
 				continue;
-			// an empty variable is none
+			// an empty variable is ignored
 			if (row->max > 0 || flag)
 				refused(row, row->max == 0 ? "" : "x", flag);
 			if (row->max > 0) {
@@ -71,7 +71,7 @@ static void what_an_option_does_not_take_is_refused_by_name(void **state)
 	}
 }
 
-/* Sets every variable, or with NULL none. */
+/* Sets every variable to a value; NULL: removes them. */
 static void set_variables(const char *value)
 {
 	for (const struct option_row *row = options_table; row < options_table + options_count; row++) {

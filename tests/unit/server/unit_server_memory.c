@@ -1,4 +1,4 @@
-/* The default of --memory-max: files of a machine in a folder of the test's own. */
+/* The default of --memory-max: files of a simulated machine in a folder of the test. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -31,7 +31,7 @@ static void half_of_the_machine_or_of_the_least_control_group(void **state)
 	assert_non_null(mkdtemp(root));
 	write_file("/proc/meminfo", "MemTotal:        8388608 kB\nMemFree:  1 kB\n");
 	assert_int_equal(memory_share(root), 4096);
-	// version 2: the group has no limit, the one around it has
+	// version 2: the group has no limit, its parent has one
 	write_file("/proc/self/cgroup", "0::/system.slice/poundd.service\n");
 	write_file("/sys/fs/cgroup/system.slice/poundd.service/memory.max", "max\n");
 	assert_int_equal(memory_share(root), 4096);
@@ -39,7 +39,7 @@ static void half_of_the_machine_or_of_the_least_control_group(void **state)
 	assert_int_equal(memory_share(root), 512);
 	write_file("/sys/fs/cgroup/system.slice/poundd.service/memory.max", "629145600\n");
 	assert_int_equal(memory_share(root), 300);
-	// version 1, where no limit is a large one; the group of a container may be the root that is seen
+	// version 1, where no limit is a large number; the group of a container may be the visible root
 	write_file("/proc/self/cgroup", "9:cpu:/x\n4:memory:/docker/1\n0::/none\n");
 	assert_int_equal(memory_share(root), 4096);
 	write_file("/sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
@@ -49,7 +49,7 @@ static void half_of_the_machine_or_of_the_least_control_group(void **state)
 	char remove[PATH_MAX];
 	snprintf(remove, sizeof remove, "rm -r %s", root);
 	assert_int_equal(system(remove), 0);
-	// of this machine it is known, too
+	// also known for this machine
 	check_report("this machine: %d MiB", memory_share(""));
 	assert_true(memory_share("") > 1 && memory_share("") < INT_MAX);
 }

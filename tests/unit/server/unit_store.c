@@ -1,4 +1,4 @@
-/* The store by itself: order, states, and what happens once. */
+/* The store without a server: order, states, and operations that happen once. */
 #include "server/store.h"
 
 #include <pthread.h>
@@ -62,7 +62,7 @@ static void runs_keep(void *to, const struct study_status *study)
 	*(int64_t *)to = study->runs_done;
 }
 
-/* Whether a block is kept. */
+/* Keeps a block; whether it was kept. */
 static bool keep(struct store *store, int64_t id, const struct store_block *block)
 {
 	struct store_block mine = *block, *blocks[] = {&mine};
@@ -70,7 +70,7 @@ static bool keep(struct store *store, int64_t id, const struct store_block *bloc
 	return store_keep(store, blocks, 1) == STORE_OK && mine.kept;
 }
 
-/* The server takes a study, keeps a block of it or none, crashes, and starts again. */
+/* A server claims a study, keeps one block or none, crashes, and the store is opened again. */
 static void crashed(void **state, int64_t id, const struct store_block *block)
 {
 	int status;
@@ -156,7 +156,7 @@ static void blocks_are_kept_together_and_only_while_their_studies_run(void **sta
 	assert_false(keep(*state, id, &block));
 	assert_int_equal(claim(*state, &id), STORE_OK);
 	assert_true(keep(*state, id, &block));
-	// of two studies in turn, one of which does not run
+	// of two studies alternately, one of which does not run
 	struct store_block mixed[6], *blocks[6];
 	for (int i = 0; i < 6; i++) {
 		mixed[i] = block;
@@ -206,7 +206,7 @@ static void a_store_in_use_is_not_opened_again(void **state)
 	assert_null(store_open(path));
 }
 
-/* Opens a store by another name of the one in use, made by `make`; NULL: refused. */
+/* Opens a store under another name of the file in use, created by `make`; NULL: refused. */
 static struct store *opened_by(int (*make)(const char *, const char *), const char *name)
 {
 	assert_int_equal(make(path, name), 0);
@@ -226,7 +226,7 @@ static void a_store_in_use_is_not_opened_by_another_name(void **state)
 	assert_null(store_open(link_of_link));
 	unlink(link_of_link);
 	unlink(name);
-	// nor by the first name, while there are two
+	// nor under the first name, while the file has two
 	assert_null(opened_by(link, name));
 	store_close(*state);
 	*state = NULL;
@@ -254,7 +254,7 @@ static void a_link_to_no_database_yet_makes_it_where_it_leads(void **state)
 	unlink(name);
 }
 
-/* The lock of a process that was killed lasts until its memory is given back, which takes as long as it is large. */
+/* The kernel releases the lock of a killed process only after its memory, which takes longer the larger the memory is. */
 static void a_store_whose_server_was_just_killed_is_opened(void **state)
 {
 	enum { LARGE = 256 << 20 };
@@ -323,7 +323,7 @@ static void a_key_stands_for_one_study(void **state)
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	assert_true(again == first);
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &other), STORE_CLASH);
-	// what is there already is found when there is no room for more
+	// a repeated study is found even if the queue is full
 	study.queue_max = 1;
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &again), STORE_REPEATED);
 	study.key = "b key";
@@ -331,23 +331,23 @@ static void a_key_stands_for_one_study(void **state)
 	study.queue_max = 2;
 	assert_int_equal(store_submit(*state, &study, "{}", 2, &other), STORE_OK);
 	assert_true(other != first);
-	// when the study has gone, so has its key
+	// a deleted study releases its key
 	assert_int_equal(store_delete(*state, first), STORE_OK);
 	study.key = "a key";
 	assert_int_equal(store_submit(*state, &study, "{ }", 3, &again), STORE_OK);
 }
 
-/* Until version 3 keys were stored as they came; since then behind the name of the token, if any, and a space. */
+/* Before version 3 keys were stored unchanged; since then they follow the name of the token, if any, and a space. */
 static void keys_of_every_version_stand_for_their_studies(void **state)
 {
 	static const struct {
-		const char *stored, *client, *asked; /* asked: as it is since version 3 */
+		const char *stored, *client, *asked; /* asked: the key in the form used since version 3 */
 	} keys[] = {{"old", NULL, " old"},
 	            {"old with spaces", NULL, " old with spaces"},
 	            {"0123456789abcdef old", NULL, " 0123456789abcdef old"},
 	            {" new", NULL, " new"},
 	            {"0123456789abcdef new", "0123456789abcdef", "0123456789abcdef new"},
-	            {"again", NULL, NULL}, // and asked for since then:
+	            {"again", NULL, NULL}, // submitted before version 3, and again since:
 	            {" again", NULL, " again"}};
 	enum { KEYS = sizeof keys / sizeof keys[0] };
 	int64_t ids[KEYS], id;
@@ -380,7 +380,7 @@ static void keys_of_every_version_stand_for_their_studies(void **state)
 
 enum { SUBMITTERS = 8, EACH = 20, QUEUE_MAX = 50, OWN_MAX = 20 };
 
-/* one of those who submit at the same time */
+/* one of several clients that submit at the same time */
 struct submitter {
 	struct store *store;
 	struct store_study study;
@@ -397,7 +397,7 @@ static void *submit_each(void *argument)
 	return NULL;
 }
 
-/* How often either of two clients, who submit side by side, had an answer. */
+/* How often each of two clients that submit at the same time received each answer. */
 static void submit_all(struct store *store, int64_t own_max, int answers[2][STORE_CLIENT_CROWDED + 1])
 {
 	struct submitter submitters[SUBMITTERS];
@@ -466,7 +466,7 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 	const struct store_block block = {.number = 0, .runs = 5, .n = 1, .values = &value};
 	char known[128];
 	int64_t id = submitted(*state, "a");
-	// two crashes, one after a block, two: never three without a block between
+	// two crashes, one crash after a block, two crashes: never three in succession without a block
 	for (int i = 0; i < 5; i++) {
 		crashed(state, id, i == 2 ? &block : NULL);
 		assert_int_equal(store_study(*state, id, name_keep, known), STORE_OK);
@@ -478,7 +478,7 @@ static void only_crashes_that_follow_each_other_without_a_block_make_a_poison(vo
 }
 
 struct listed {
-	char names[256]; /* each with a space behind it */
+	char names[256]; /* each followed by a space */
 };
 
 static void name_add(void *to, const struct study_status *study)
@@ -508,7 +508,7 @@ static void a_list_has_the_studies_of_a_status_a_name_and_a_hash(void **state)
 	assert_int_equal(claim(*state, &id), STORE_OK);
 	list_is(*state, (struct store_filter){0}, "Tower bridge tower% tower ");
 	list_is(*state, (struct store_filter){.name = "tower"}, "tower% tower ");
-	// a text, and no pattern
+	// the name is matched as text, not as a pattern
 	list_is(*state, (struct store_filter){.name = "%"}, "tower% ");
 	list_is(*state, (struct store_filter){.hash = "a"}, "bridge tower ");
 	list_is(*state, (struct store_filter){.hash = "a", .status = "running"}, "tower ");
@@ -517,7 +517,7 @@ static void a_list_has_the_studies_of_a_status_a_name_and_a_hash(void **state)
 	list_is(*state, (struct store_filter){.name = "ow", .status = "queued"}, "Tower tower% ");
 }
 
-/* The server stops, and starts again when a statement has changed its database. */
+/* The server stops, a statement changes its database, and the store is opened again. */
 static void changed_to(void **state, const char *sql)
 {
 	sqlite3 *db;

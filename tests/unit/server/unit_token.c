@@ -1,4 +1,4 @@
-/* Bearer tokens: whose they are, and which file may hold them. */
+/* Bearer tokens: their owners, and which files may hold them. */
 #include "server/token.h"
 
 #include <fcntl.h>
@@ -10,7 +10,7 @@
 
 static const char RIGHT[] = "0123456789abcdef0123456789abcdef";
 
-/* The tokens of a file of that text and mode; NULL: refused. */
+/* The tokens of a file with this text and mode; NULL: refused. */
 static struct tokens *opened(const char *text, mode_t mode)
 {
 	char path[] = "/tmp/pound-token-XXXXXX";
@@ -45,10 +45,10 @@ static void a_token_is_known_to_its_last_character(void **state)
 	assert_null(tokens_name(tokens, RIGHT));
 	for (size_t n = 0; n < strlen(RIGHT); n++) {
 		char wrong[64];
-		snprintf(wrong, sizeof wrong, "Bearer %.*s", (int)n, RIGHT); // a beginning
+		snprintf(wrong, sizeof wrong, "Bearer %.*s", (int)n, RIGHT); // only the beginning
 		assert_null(tokens_name(tokens, wrong));
 		snprintf(wrong, sizeof wrong, "Bearer %s", RIGHT);
-		wrong[7 + n] ^= 1; // one bit off
+		wrong[7 + n] ^= 1; // one bit wrong
 		assert_null(tokens_name(tokens, wrong));
 	}
 	assert_null(tokens_name(tokens, "Bearer 0123456789ABCDEF0123456789ABCDEF"));
@@ -75,7 +75,7 @@ static void a_file_without_a_good_token_is_refused(void **state)
 	assert_null(opened("# nobody\n\n", 0600));
 	assert_null(opened("short\n", 0600));
 	assert_null(opened("0123456789abcdef0123456789abcdef\n0123456789abcdef0123456789abcde\n", 0600));
-	// not two tokens of one that is cut
+	// one long line is not read as two tokens
 	char line[1024];
 	snprintf(line, sizeof line, "%01000d\n", 1);
 	assert_null(opened(line, 0600));

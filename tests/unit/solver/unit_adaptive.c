@@ -1,4 +1,5 @@
-/* unit_adaptive.c - the adaptive solver against closed forms and the exact march, which it shares no integration with. */
+/* unit_adaptive.c - the adaptive solver against closed forms and against the exact solver, with which it shares no
+ * integration. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -75,7 +76,7 @@ static void responses_are_those_of_the_march_to_the_tolerance(void **state)
 		for (size_t i = 0; i < sizeof tolerances / sizeof tolerances[0]; i++) {
 			specimen.study.solver.tolerance = tolerances[i];
 			const struct pound_response response = specimen_engine(&specimen);
-			// a few hundred steps, at random; each impact may make what came before it a few times larger
+			// a few hundred steps with random errors; each impact may amplify the earlier errors a few times
 			check_near(distance(&response, &exact), 0, 100 * tolerances[i]);
 			check_near(response.contact_count, exact.contact_count, 0);
 		}
@@ -83,7 +84,7 @@ static void responses_are_those_of_the_march_to_the_tolerance(void **state)
 	}
 }
 
-/* The reference scene for its first 3 s: smooth noise, impacts at every swing. */
+/* The reference scene for 3 s: smooth noise, impacts in every cycle. */
 static void three_seconds_of_pounding_agree_to_1e_9(void **state)
 {
 	(void)state;
@@ -106,9 +107,9 @@ static void three_seconds_of_pounding_agree_to_1e_9(void **state)
 	}
 }
 
-/* Rough records, in which a body that yields turns twice within one of the solver's steps now and then: seen at the ends alone it
- * would miss both and stay on the wrong branch: one in 16 records was off by up to 1.6 %.  A thousand times the tolerance is far
- * below that. */
+/* Rough records, where the velocity of a yielding body sometimes changes sign twice within one step of the solver:
+ * without a search inside the step it would miss both reversals and stay on the wrong branch, with errors of up to
+ * 1.6 % in one of 16 records.  A thousand times the tolerance is far below that. */
 static void no_turn_is_missed_though_another_one_follows_in_the_same_step(void **state)
 {
 	enum { RECORDS = 150, SAMPLES = 25 };
@@ -132,10 +133,10 @@ static void no_turn_is_missed_though_another_one_follows_in_the_same_step(void *
 	}
 }
 
-/* Contacts without tension, half of them without restitution, from bodies that stand side by side: their force falls to 0 and
- * rises again within one of the solver's steps now and then, and the ground sets both bodies going alike.  Seen at the ends of
- * steps alone, four of these records were off by 0.8 to 69 %; and the rounding of two like accelerations began a contact that
- * was none in twelve more. */
+/* Contacts without tension, half of them without restitution, between bodies that touch at rest: the force sometimes
+ * falls to 0 and rises again within one step of the solver, and the ground accelerates both bodies alike.  Without a
+ * search inside the step four of these records had errors of 0.8 to 69 %; and in twelve more a rounding difference of
+ * equal accelerations began a false contact. */
 static void no_release_is_missed_though_the_force_returns_in_the_same_step(void **state)
 {
 	enum { SCENES_FORCED = 3000 };
@@ -162,7 +163,7 @@ static void no_release_is_missed_though_the_force_returns_in_the_same_step(void 
 	}
 }
 
-/* The ground pushes the softer body against the other for a second; the contact is 1e4 times faster than they are. */
+/* The ground presses the softer body on the other for a second; the contact is 1e4 times faster than the bodies. */
 static void a_stiff_contact_is_followed_by_the_implicit_stepper(void **state)
 {
 	(void)state;
@@ -177,7 +178,7 @@ static void a_stiff_contact_is_followed_by_the_implicit_stepper(void **state)
 	const struct pound_response exact = specimen_engine(&specimen);
 	specimen.study.solver = (struct pound_solver){.method = row_of("adaptive"), .tolerance = 1e-9};
 	const struct pound_response response = specimen_engine(&specimen);
-	// each sample is some 100 steps of low order, their errors add up
+	// each sample takes some 100 steps of low order, whose errors add up
 	check_near(distance(&response, &exact), 0, 1e-6);
 	assert_true(exact.contact_time > 0.9);
 	specimen_free(&specimen);

@@ -1,7 +1,8 @@
-/* unit_contact_models.c - every contact model by every solver that takes it, against known answers of other programs.
+/* unit_contact_models.c - every contact model by every solver that supports it, against known answers of other
+ * programs.
  *
- * Two oscillators, 1e5 kg of 2 Hz and 1.7e5 kg of 3.1 Hz, 5 % damping, gap 4 mm, under 2.5 s of a sine of 1.9 Hz and 3 m/s2, sampled
- * at 0.01 s; contacts are 100 times as stiff as the stiffer oscillator, or 2e9 N/m^1.5. */
+ * Two oscillators, 1e5 kg at 2 Hz and 1.7e5 kg at 3.1 Hz, 5 % damping, gap 4 mm, under 2.5 s of a sine of 1.9 Hz and
+ * 3 m/s2, sampled at 0.01 s; contacts are 100 times as stiff as the stiffer oscillator, or 2e9 N/m^1.5. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -24,7 +25,7 @@ static const struct model_case {
 	const char *model;
 	bool exact, released; /* calibration; no tension */
 	double restitution;
-	struct known known; /* contacts 0: not known */
+	struct known known; /* contacts 0: unknown */
 } cases[] = {
     {"linear",
      false,
@@ -116,7 +117,7 @@ static struct pound_task_result result_of(const struct pound_task *task, const s
 	return result;
 }
 
-/* Largest error of a result over what it should be. */
+/* Largest relative error of a result. */
 static double error_of(const struct pound_task_result *r, const struct known *known)
 {
 	double error = fabs(r->impulse_max * 1e5 / known->impulse - 1);
@@ -147,7 +148,7 @@ static void the_adaptive_solver_has_the_known_answers_of_every_model(void **stat
 		assert_int_equal(r.contacts, cases[i].known.contacts);
 		check_near(r.first_contact, .411331188317195, 1e-11);
 		check_near(r.first_speed, .513724371110237, 1e-10);
-		// a hundred times the tolerance, ten times that for what nine contacts make of it
+		// a hundred times the tolerance, times ten for the amplification by nine contacts
 		check_near(error_of(&r, &cases[i].known), 0, 1e-9);
 	}
 }
@@ -165,12 +166,12 @@ static void the_exact_solver_has_the_known_answers_of_every_model(void **state)
 		check_near(r.first_speed, .513724371110237, 1e-13);
 		const struct known known = known_of(&cases[i]);
 		assert_int_equal(r.contacts, known.contacts);
-		// what is not known is compared with the adaptive solver
+		// unknown values are compared with the adaptive solver
 		check_near(error_of(&r, &known), 0, cases[i].known.contacts > 0 ? 1e-12 : 1e-9);
 	}
 }
 
-/* The same scenes as rows of one-storey buildings, which have the largest force, too. */
+/* The same scenes as rows of one-story buildings, which also have the largest force. */
 static void rows_have_the_known_largest_forces(void **state)
 {
 	(void)state;
@@ -184,7 +185,7 @@ static void rows_have_the_known_largest_forces(void **state)
 		struct pound_chain_result result = {.floors = chain.floor_measures[0], .links = chain.link_measures};
 		assert_true(pound_chain_lanes(0, &chain.task, &result, 1, scratch, NULL));
 		assert_int_equal(result.status, POUND_OK);
-		// forces are over the left mass
+		// forces are per mass of the left body
 		check_near(chain.link_measures[POUND_LINK_FORCE_MAX] * 1e5, cases[i].known.force,
 		           1e-12 * cases[i].known.force);
 		check_near(chain.link_measures[POUND_LINK_IMPULSE_MAX] * 1e5, cases[i].known.impulse,
@@ -192,7 +193,7 @@ static void rows_have_the_known_largest_forces(void **state)
 	}
 }
 
-/* Errors of the fixed steps fall with the step: to a tenth at least where that is a hundredth. */
+/* Errors of the fixed steps decrease with the step: at least to a tenth for a step of a hundredth. */
 static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(void **state)
 {
 	(void)state;
@@ -208,13 +209,13 @@ static void fixed_steps_converge_to_the_known_answers_of_every_model_they_take(v
 			const struct pound_task_result r = result_of(&task, &coarse), s = result_of(&task, &fine);
 			assert_int_equal(s.contacts, known.contacts);
 			const double before = error_of(&r, &known), after = error_of(&s, &known);
-			// a contact begins and ends up to a step late
+			// a contact begins and ends up to one step late
 			const double late = 2 * known.contacts * fine.step / known.time;
 			if (!(after < fmax(0.1 * before, late)) || !(after < 2e-3))
 				fail_msg("%s, %s: errors %g, %g", pound_solver_name(row), cases[i].model, before, after);
 			compared++;
 		}
-	assert_int_equal(compared, 2 * (COUNT(cases) - 1)); // all but rigid
+	assert_int_equal(compared, 2 * (COUNT(cases) - 1)); // all except rigid
 }
 
 CHECK_MAIN(cmocka_unit_test(the_exact_solver_has_the_known_answers_of_every_model),

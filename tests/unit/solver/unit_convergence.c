@@ -1,4 +1,4 @@
-/* unit_convergence.c - the study of solvers: what its rows say where the errors are known. */
+/* unit_convergence.c - convergence studies: rows whose errors are known. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -11,7 +11,7 @@
 
 enum { NEWMARK = 1, CENTRAL_DIFFERENCE = 2, ADAPTIVE = 3, SAMPLES = 301 };
 
-/* A convergence study of smooth noise for 3 s; two solvers by five halved steps, one by three tolerances. */
+/* A convergence study of smooth noise for 3 s; two solvers with five halved steps, one with three tolerances. */
 static void convergence_init(struct specimen *specimen)
 {
 	specimen_init(specimen);
@@ -41,7 +41,7 @@ static void rows_are_the_reference_the_second_opinion_and_every_setting(void **s
 	(void)state;
 	struct specimen specimen;
 	convergence_init(&specimen);
-	specimen.study.convergence.settings[NEWMARK].values[0] = 0.0051; // cut into two steps of 0.005
+	specimen.study.convergence.settings[NEWMARK].values[0] = 0.0051; // divided into two steps of 0.005
 	struct pound_run *run = run_all(&specimen.study, NULL);
 	const struct pound_result *r = pound_run_result(run);
 	assert_int_equal(r->n_trials, 2 + 5 + 5 + 3);
@@ -53,7 +53,7 @@ static void rows_are_the_reference_the_second_opinion_and_every_setting(void **s
 		assert_true(isnan(trial->solver.step) == (trial->solver.method % 3 == 0));
 		assert_true(isnan(trial->solver.tolerance) == (trial->solver.method != ADAPTIVE));
 		assert_true(isnan(trial->order) == (j < 2 || methods[j - 1] != methods[j] || j == 2));
-		assert_true(isnan(trial->cpu)); // there is no clock
+		assert_true(isnan(trial->cpu)); // the test has no clock
 		assert_int_equal(trial->runs_failed, 0);
 	}
 	check_near(r->trials[0].history.largest + r->trials[0].impulse.largest, 0, 0);
@@ -74,7 +74,7 @@ static void without_contact_both_fixed_steps_are_of_second_order(void **state)
 	const struct pound_result *r = pound_run_result(run);
 	for (int j = 2; j < r->n_trials; j++)
 		if (pound_solver_takes_step(r->trials[j].solver.method) && !isnan(r->trials[j].order))
-			// of smooth forces on two frequencies up to 2.5 Hz: (w h)^2 = 0.6 % at the first step
+			// smooth forces, two frequencies up to 2.5 Hz: (w h)^2 = 0.6 % at the first step
 			check_near(r->trials[j].order, 2, 0.02);
 	assert_true(r->trials[6].history.mean < 1e-4 && r->trials[11].history.mean < 1e-4);
 	check_near(pound_convergence_order(r->trials, r->n_trials, NEWMARK), 2, 0.02);
@@ -84,8 +84,8 @@ static void without_contact_both_fixed_steps_are_of_second_order(void **state)
 	specimen_free(&specimen);
 }
 
-/* Over 2 s of contacts errors are of the first power: five halvings are 16 times less, give and take what each step makes
- * of the beginning of a contact.  The second opinion agrees with the reference. */
+/* In 2 s with contacts errors are of first order: after five steps, each half the last, 16 times less, except for the
+ * scatter due to the start of contacts.  The second opinion agrees with the reference. */
 static void with_contact_errors_fall_and_the_second_opinion_agrees(void **state)
 {
 	(void)state;
@@ -105,7 +105,7 @@ static void with_contact_errors_fall_and_the_second_opinion_agrees(void **state)
 			assert_true(r->trials[first + 4].history.mean < r->trials[first].history.mean / 4);
 			assert_true(r->trials[first + 4].impulse.mean < 0.05);
 		}
-		// a yield displacement that is found is each solver's own, so that the demand has an error of its own
+		// each solver searches its own yield displacement, so the demand has a separate error
 		assert_true(isnan(second->demand.mean) == (k < 2));
 		if (k >= 2)
 			assert_true(r->trials[2].demand.mean != r->trials[2].displacement.mean);
@@ -129,7 +129,7 @@ static void a_setting_that_fails_is_counted_and_the_others_stand(void **state)
 	assert_int_equal(r->trials[9].runs_failed, 0);
 	assert_int_equal(r->cells[0].runs_failed, 2);
 	assert_true(isnan(r->trials[7].displacement.mean) && isnan(r->trials[7].history.largest));
-	assert_true(isnan(r->trials[9].order)); // there is no error before
+	assert_true(isnan(r->trials[9].order)); // there is no earlier error
 	assert_true(r->trials[10].order > 1.5);
 	pound_run_free(run);
 	specimen_free(&specimen);
@@ -150,7 +150,7 @@ static void a_run_s_time_is_the_clock_s_over_its_runs(void **state)
 	struct pound_run *run = run_all(&specimen.study, counted_cpu);
 	const struct pound_result *r = pound_run_result(run);
 	for (int j = 0; j < r->n_trials; j++)
-		check_near(r->trials[j].cpu, 0.25, 0); // one run between two ticks
+		check_near(r->trials[j].cpu, 0.25, 0); // one run between two clock ticks
 	pound_run_free(run);
 	specimen_free(&specimen);
 }

@@ -1,4 +1,4 @@
-/* unit_fixed_step.c - the integrators of fixed step against closed forms and against the exact march. */
+/* unit_fixed_step.c - the fixed-step integrators against closed forms and against the exact solver. */
 #include "tests/support/check.h"
 #include "tests/support/scenes.h"
 
@@ -23,7 +23,7 @@ static struct pound_task_result integrate(int method, double step, const struct 
 	return result;
 }
 
-/* One oscillator of 1 Hz let go from 1 m at `speed`, for 4 s. */
+/* One oscillator of 1 Hz released from 1 m with the velocity `speed`, for 4 s. */
 static struct pound_task vibration(double damping_ratio, double speed)
 {
 	double w = 2 * PI;
@@ -58,7 +58,7 @@ static void the_error_of_free_vibration_falls_with_the_square_of_the_step(void *
 		double before = 0;
 		for (double step = 5e-3; step > 3e-4; step /= 2) {
 			double error = fabs(integrate(method, step, &task).u[0] - u);
-			// the next term is (w h)^2 of this one, 0.1 % at the first step, and log2 makes 1.44 times that of it
+			// the next term is (w h)^2 of this one, 0.1 % at the first step; log2 multiplies it by 1.44
 			if (before > 0)
 				check_near(log2(before / error), 2, 0.01);
 			before = error;
@@ -76,7 +76,7 @@ static void newmark_keeps_the_energy_of_free_vibration_at_any_step(void **state)
 		task.bodies[0].backbone.stiffness = w * w;
 		const struct pound_task_result r = integrate(NEWMARK, 1, &task);
 		assert_int_equal(r.status, POUND_OK);
-		// a rounding of 400 steps, each of some ten operations
+		// rounding errors of 400 steps, each of some ten operations
 		double energy = w * w + 2 * 2;
 		check_near((w * w * r.u[0] * r.u[0] + r.v[0] * r.v[0]) / energy, 1, 1e-11);
 	}
@@ -103,12 +103,12 @@ static void an_explicit_step_beyond_its_limit_ends_with_a_status(void **state)
 	const struct pound_task_result r = integrate(CENTRAL_DIFFERENCE, 0.01, &task);
 	assert_int_equal(r.status, POUND_UNSTABLE);
 	check_near(r.displacement_max[0] + r.u[0] + r.impulse_max, 0, 0);
-	// and so when it overflows before the next look, or is no number at all
+	// also if it overflows before the next check, or is not a number
 	task.bodies[0].backbone.stiffness = 1e300;
 	assert_int_equal(integrate(CENTRAL_DIFFERENCE, 0.01, &task).status, POUND_UNSTABLE);
 }
 
-/* A contact that lasts a few steps need not run away to be wrong. */
+/* A contact of a few steps has a wrong result even if it does not diverge. */
 static void nor_is_one_beyond_that_of_a_touching_pair_passed_in_silence(void **state)
 {
 	(void)state;
@@ -142,7 +142,7 @@ static void an_impact_leaves_with_the_restitution_to_the_first_power_of_the_step
 			for (double step = 1e-4; step > 1e-6; step /= 10) {
 				const struct pound_task task = specimen_impact(e / 10.0, true, 21);
 				const struct pound_task_result r = integrate(method, step, &task);
-				// the overlap begins and ends up to a step late, each with a force up to C v: 2 w h in all
+				// the contact begins and ends up to one step late, each with a force up to C v: 2 w h in total
 				double w = sqrt(task.contact_stiffness * 1.5);
 				check_near((r.v[1] - r.v[0]) / 1.5, e / 10.0, 2 * w * step);
 				check_near(r.impulse_max, (1 + e / 10.0) * 1.5 / 1.5, 4 * w * step);
@@ -159,8 +159,8 @@ static double distance(const struct pound_response *a, const struct pound_respon
 	return fmax(u, impulse);
 }
 
-/* Random scenes with every law and both contact rules, for 1 s.  The contact is up to 1e4 times stiffer: w h <= 0.03 at
- * the finer step, of which an impact makes an error of some per cent, and the following ones a few times that. */
+/* Random scenes with every law and both contact rules, for 1 s.  The contact is up to 1e4 times stiffer: w h <= 0.03
+ * at the finer step, so an impact has an error of some per cent, and later impacts a few times that. */
 static void responses_come_to_those_of_the_march(void **state)
 {
 	(void)state;
@@ -181,7 +181,7 @@ static void responses_come_to_those_of_the_march(void **state)
 			}
 			specimen_free(&specimen);
 		}
-		// the first power of the step would be 10
+		// first order in the step would be 10
 		assert_true(sum[0] / sum[1] > 8);
 	}
 }

@@ -1,4 +1,5 @@
-/* unit_solver_rows.c - rows of buildings by every solver: against the exact one, whose answers unit_chain knows, and against pairs. */
+/* unit_solver_rows.c - rows of buildings by every solver: against the exact solver, which unit_chain tests, and
+ * against pairs. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +29,7 @@ static void solve(const struct pound_chain_task *task, struct pound_solver solve
 	free(scratch);
 }
 
-/* Largest difference of a measure of the floors over the largest of it. */
+/* Largest difference of a measure over the floors, relative to its largest value. */
 static double apart(const struct pound_chain_task *task, const struct rows *a, const struct rows *b,
                     int measure)
 {
@@ -71,7 +72,7 @@ static void the_adaptive_solver_has_the_known_answers(void **state)
 		solve(&task, (struct pound_solver){.method = POUND_SOLVER_EVENT}, &exact);
 		solve(&task, (struct pound_solver){.method = POUND_SOLVER_ADAPTIVE, .tolerance = 1e-12}, &other);
 		assert_int_equal(other.status, POUND_OK);
-		// some hundred steps, each to the tolerance; each impact may make what came before it a few times larger
+		// some hundred steps, each with the tolerance; each impact may amplify the earlier errors a few times
 		check_near(distance(&task, &other, &exact), 0, 1e-9);
 		for (int k = 0; k < task.n_links; k++) {
 			check_near(other.links[k][POUND_LINK_CONTACTS], exact.links[k][POUND_LINK_CONTACTS], 0);
@@ -82,7 +83,7 @@ static void the_adaptive_solver_has_the_known_answers(void **state)
 	}
 }
 
-/* Any law, damping, contact with and without tension, levels within stories, up to 36 floors: 4 s of noise. */
+/* Any law, damping, contact with and without tension, levels within stories, up to 36 floors; 4 s of noise. */
 static void the_adaptive_solver_follows_rows_at_random(void **state)
 {
 	(void)state;
@@ -99,7 +100,7 @@ static void the_adaptive_solver_follows_rows_at_random(void **state)
 	assert_true(worst < 1e-7); // up to a thousand impacts
 }
 
-/* The sum of the errors falls with the first power of the step at least. */
+/* The sum of the errors decreases at least linearly with the step. */
 static void fixed_steps_converge_to_the_known_answers(void **state)
 {
 	(void)state;
@@ -116,7 +117,8 @@ static void fixed_steps_converge_to_the_known_answers(void **state)
 			assert_int_equal(fine.status, POUND_OK);
 			coarse += distance(&task, &other, &exact);
 			finer += distance(&task, &fine, &exact);
-			// a step late, an impact errs by w h with w of the contact, some 1e-2 at the finer step; later ones make that grow
+			// an impact one step late has an error of w h with the contact's w, some 1e-2 at the finer step; later
+			// impacts amplify it
 			check_near(distance(&task, &fine, &exact), 0, 0.05);
 			check_near(apart(&task, &fine, &exact, POUND_FLOOR_ACCELERATION_MAX), 0, 0.05);
 			for (int k = 0; k < task.n_links; k++)
@@ -129,7 +131,7 @@ static void fixed_steps_converge_to_the_known_answers(void **state)
 	}
 }
 
-/* Free of contact and linear, of every damping form: displacements at the end err by the square of the step. */
+/* Linear rows without contact, with every damping form: errors of the final displacements are of second order in the step. */
 static void without_contact_fixed_steps_are_of_second_order(void **state)
 {
 	(void)state;
@@ -151,7 +153,7 @@ static void without_contact_fixed_steps_are_of_second_order(void **state)
 				assert_int_equal(other.status, POUND_OK);
 				errors[j] = apart(&task, &other, &exact, POUND_FLOOR_END_U);
 			}
-			// the next term is (w h)^2 of this one, w h up to 0.1 in the highest mode, of which there is little
+			// the next term is (w h)^2 of this one, with w h up to 0.1 in the highest mode, which contributes little
 			check_near(log2(errors[0] / errors[1]), 2, 0.03);
 			check_near(log2(errors[1] / errors[2]), 2, 0.01);
 		}
@@ -179,7 +181,7 @@ static void a_step_beyond_2_over_the_highest_frequency_ends_with_a_status(void *
 	}
 }
 
-/* Two floors in contact: w^2 = K/m_eff but for their own springs, which are 1e4 times softer here. */
+/* Two floors in contact: w^2 = K/m_eff, neglecting their own springs, which are 1e4 times softer. */
 static void nor_is_one_beyond_that_of_what_touches_passed_in_silence(void **state)
 {
 	(void)state;
@@ -193,7 +195,7 @@ static void nor_is_one_beyond_that_of_what_touches_passed_in_silence(void **stat
 	struct pound_chain_task task = row_task(&row, samples, 0.01, DRIFTS);
 	const double limit = 2 / sqrt(2e10 * 2e-5);
 	for (int over = 0; over < 2; over++) {
-		// whole steps of a sample
+		// whole steps per sample
 		task.time_step = (over ? 1.01 : 0.99) * limit * 4;
 		solve(&task, (struct pound_solver){.method = CENTRAL_DIFFERENCE, .step = task.time_step / 4}, &other);
 		assert_int_equal(other.status, over ? POUND_UNSTABLE : POUND_OK);
@@ -203,8 +205,9 @@ static void nor_is_one_beyond_that_of_what_touches_passed_in_silence(void **stat
 	}
 }
 
-/* One-storey rows and the same scenes as pairs.  Of fixed steps the two have no code for a step in common: 1e4 steps have roundings
- * of 1e-14, and each of some four contacts, which begins at a whole step, makes a difference up to 30 times larger. */
+/* One-story rows and the same scenes as pairs.  The fixed steps of rows and pairs share no code: 1e4 steps have
+ * rounding errors of 1e-14, and each of some four contacts, which begins at a whole step, amplifies the difference up
+ * to 30 times. */
 static void one_storey_rows_agree_with_pairs(void **state)
 {
 	(void)state;
@@ -262,7 +265,7 @@ static void one_storey_rows_agree_with_pairs(void **state)
 	assert_true(worst[0] < 1e-8 && worst[1] < 1e-8 && worst[2] < 1e-10);
 }
 
-/* Contacts of products and powers, and of straight lines with edges, between floors. */
+/* Contacts whose force is a product, a power, or piecewise linear, between floors. */
 static void solvers_agree_on_every_contact_model_that_they_take(void **state)
 {
 	(void)state;
@@ -290,7 +293,7 @@ static void solvers_agree_on_every_contact_model_that_they_take(void **state)
 			compared++;
 		}
 	}
-	assert_int_equal(compared, 3 * (POUND_CONTACT_MODELS - 1)); // all but rigid
+	assert_int_equal(compared, 3 * (POUND_CONTACT_MODELS - 1)); // all except rigid
 }
 
 CHECK_MAIN(cmocka_unit_test(the_adaptive_solver_has_the_known_answers),

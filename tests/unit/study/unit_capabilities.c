@@ -1,6 +1,7 @@
-/* unit_capabilities.c - what a solver or a check cannot do with a contact model is refused where studies are read.
+/* unit_capabilities.c - if a solver or a check does not support a contact model, the reader of studies refuses the
+ * study.
  *
- * The Makefile links pound_contact_force through this file, which gives the one contact model another form of force. */
+ * The Makefile links pound_contact_force through this file, which gives a contact model another form of force. */
 #include "engine/pound.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
@@ -65,7 +66,7 @@ static void every_solver_of_a_convergence_study_must_take_it(void **state)
 	(void)state;
 	static struct problems problems;
 	pretends = true;
-	pretended = POUND_FORCE_IMPACT; // no fixed step takes it
+	pretended = POUND_FORCE_IMPACT; // no fixed step supports it
 	study_documents_refused(study_documents_convergence, &problems);
 	int n_expected = 0;
 	for (int row = 0; row < POUND_SOLVERS; row++)

@@ -1,4 +1,4 @@
-/* What a study will take: how it goes with what is asked.  How near it is, is measured by soak_cost. */
+/* The estimated cost of a study as a function of its members.  soak_cost measures the accuracy of the estimate. */
 #include "schema/study/cost.h"
 
 #include <math.h>
@@ -35,7 +35,7 @@ static void what_is_asked_twice_costs_twice(void **state)
 {
 	(void)state;
 	struct cost one = cost_of_text(DESIGN, 5, "", 1000, "");
-	// a part of each, the study's own, is there once: less than a part in 20 of it all
+	// the constant cost of a study does not double: less than 1/20 of the total
 	const struct cost twice[] = {
 	    cost_of_text(DESIGN, 5, "", 2000, ""),
 	    cost_of_text(DESIGN, 10, "", 1000, ""),
@@ -44,7 +44,7 @@ static void what_is_asked_twice_costs_twice(void **state)
 	};
 	for (size_t i = 0; i < sizeof twice / sizeof twice[0]; i++) {
 		assert_int_equal(twice[i].runs, 2 * one.runs);
-		// the cells of the sweep have their ground motions and the other body in common
+		// the cells of the sweep share their ground motions and the other body
 		if (i < 2)
 			check_near(twice[i].cpu_s / one.cpu_s, 2, 0.1);
 		else
@@ -56,7 +56,7 @@ static void what_is_asked_twice_costs_twice(void **state)
 static void a_motion_is_as_long_as_it_is_in_the_mean(void **state)
 {
 	(void)state;
-	// cycles of a frequency uniform in [1, 3] Hz are as long as those of 2 / ln 3 = 1.8205 Hz, and not as of 1 Hz
+	// cycles at a frequency uniform in [1, 3] Hz last on average as long as at 2 / ln 3 = 1.8205 Hz, not as at 1 Hz
 	static const char varied[] = ", {\"path\": \"/excitation/frequency_hz\", \"distribution\": {\"type\": "
 	                             "\"uniform\", \"min\": 1, \"max\": 3}}";
 	static const char as_long[] = ", {\"path\": \"/excitation/frequency_hz\", \"distribution\": {\"type\": "
@@ -78,7 +78,7 @@ static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
 	double fine = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"newmark\", \"step_s\": 1e-5}").cpu_s;
 	double adaptive = cost_of_text(form, 1e2, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
 	double follows = cost_of_text(form, 1e8, ", \"solver\": {\"method\": \"adaptive\"}").cpu_s;
-	// the march goes over the contact's swings at once, the adaptive solver takes steps in each of them
+	// the exact solver passes many contact oscillations at once, the adaptive solver takes steps in each of them
 	assert_true(stiff > 1.3 * soft && stiff < 3 * soft);
 	assert_true(follows > 2 * adaptive);
 	check_near(fine / coarse, 10, 0.5);
@@ -92,7 +92,7 @@ static void finer_steps_stiffer_contacts_and_more_trials_cost_more(void **state)
 	assert_int_equal(many.runs, few.runs + few.runs / 3);
 }
 
-/* A row costs by its floors and more for each contact model that is slower; without contact it costs less. */
+/* The cost of a row depends on its floors, increases with slower contact models, and is less without contact. */
 static void a_row_costs_by_its_floors_and_its_contacts(void **state)
 {
 	(void)state;
@@ -108,7 +108,7 @@ static void a_row_costs_by_its_floors_and_its_contacts(void **state)
 	assert_true(apart < 0.5 * large && rigid > large);
 }
 
-/* A correction is one more response of each body without pounding; a search of many ends after a few. */
+/* A correction is one more response of each body without pounding; a search with many corrections ends after a few. */
 static void a_search_for_a_target_demand_costs_by_its_responses(void **state)
 {
 	(void)state;
@@ -124,7 +124,7 @@ static void a_search_for_a_target_demand_costs_by_its_responses(void **state)
 	check_near(cost_of_text(form, "linear", 50).cpu_s / cost_of_text(form, "linear", 1).cpu_s, 1, 0);
 }
 
-/* Above two radians a sample there are steps for each of them: twice as many for twice the frequency. */
+/* Above two radians per sample each radian takes a step: twice as many for twice the frequency. */
 static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void **state)
 {
 	(void)state;
@@ -138,7 +138,7 @@ static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void *
 		       mapped = cost_of_text(form, 29.0, solvers[k]).cpu_s;
 		double fast = cost_of_text(form, 1e4, solvers[k]).cpu_s,
 		       faster = cost_of_text(form, 2e4, solvers[k]).cpu_s;
-		// the adaptive one has no maps
+		// the adaptive solver has no maps
 		if (k == 0)
 			check_near(mapped / slow, 1, 0);
 		else
@@ -147,7 +147,7 @@ static void an_oscillator_that_turns_often_in_a_sample_costs_by_its_turns(void *
 	}
 }
 
-/* Short documents that take long: their time when they were run on one core, within three. */
+/* Short documents with long run times: measured on one core, within a factor of three. */
 static void what_is_not_a_run_is_counted_too(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* Estimates of CPU time: a short sample of what soak_valid draws. */
+/* Estimates of CPU time: a short version of soak_valid. */
 #include <math.h>
 
 #include "schema/study/cost.h"
@@ -8,9 +8,9 @@
 
 enum { STUDIES = 60, NEAR_PERCENT = 85 };
 
-static const double CPU_MOST = 0.1; /* [s] estimated */
+static const double CPU_MOST = 0.1; /* [s] largest estimate */
 
-/* Wider than soak_valid asks, for others may use the machine meanwhile, and it may have fewer lanes. */
+/* Wider than in soak_valid, as other programs may use the machine meanwhile, and it may have fewer lanes. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 static const double FACTOR = 60;
 #else

@@ -1,4 +1,4 @@
-/* unit_fields.c - the table of request fields: complete, consistent, and near enough to guess what was meant. */
+/* unit_fields.c - the table of request fields: complete and consistent; suggestions for misspelled names. */
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static void every_default_is_in_its_range(void **state)
 	for (int i = 0; i < fields_count; i++) {
 		const struct field *field = &fields[i];
 		bool number = field->type == FIELD_REAL || field->type == FIELD_COUNT;
-		// 0 that is out of range: not given, found from other members
+		// a default of 0 outside the range: absent, derived from other members
 		const bool not_given = field->ends == FIELD_OPEN_MIN && field->absent == 0;
 		if (!number || isnan(field->absent) || not_given)
 			continue;
@@ -38,7 +38,7 @@ static void every_row_stands_below_an_object_or_a_list(void **state)
 		assert_non_null(above);
 		assert_true(fields_child(&fields[i], parent));
 		bool list = strcmp(fields_name(&fields[i]), "*") == 0;
-		// frequencies are a list, or an object that stands for one
+		// frequencies are a list, or an object that describes one
 		bool range = strcmp(parent, "/spectrum/frequencies_hz") == 0;
 		assert_int_equal(above->type, list || range ? FIELD_LIST : FIELD_OBJECT);
 	}
@@ -150,11 +150,11 @@ static void kind_excitation_and_solver_decide_what_is_used(void **state)
 	assert_true(fields_used(fields_find("/scene/excitation/rise"), "response", "white_noise", NULL));
 	assert_false(fields_used(fields_find("/scene/excitation/rise"), "response", "record", NULL));
 	assert_false(fields_used(fields_find("/scene/excitation/rise"), "response", "noise",
-	                         NULL)); // a part of a name is none
+	                         NULL)); // part of a name does not match
 	assert_true(fields_used(fields_find("/solver/step_s"), "response", NULL, "newmark"));
 	assert_false(fields_used(fields_find("/solver/step_s"), "response", NULL, "event"));
 	assert_true(fields_used(fields_find("/solver/step_s"), "response", NULL, NULL));
-	// every name in a row is one of the engine's
+	// every name in a row is a name of the engine
 	for (int i = 0; i < fields_count; i++) {
 		int n = 0, known = 0;
 		for (const char *s = fields[i].types; s && s[1]; s = strchr(s + 1, ' '))
@@ -165,7 +165,7 @@ static void kind_excitation_and_solver_decide_what_is_used(void **state)
 	}
 }
 
-/* A limit that only holds beside other members stands in the text of a field, which schema/study.md and OpenAPI show. */
+/* A limit that depends on other members must be in the text of its field, which schema/study.md and OpenAPI show. */
 static void every_limit_between_members_stands_in_the_text_of_its_field(void **state)
 {
 	(void)state;

@@ -1,14 +1,14 @@
-/* unit_study_cases.c - what a reader says of a study document, case by case: tests/cases/study_*.txt.
+/* unit_study_cases.c - problems that the reader reports for study documents, case by case: tests/cases/study_*.txt.
  *
  * A file is read line by line; a blank line ends a paragraph, # begins a comment.
  *
- *   base NAME            from here on the text that is changed: a document of tests/support/study_documents.h
- *   /design/rows         the field that the cases of this paragraph are of: its pattern in fields.c
- *   - TEXT               the first place of TEXT in the base (a line break and the spaces after it count as one space) ...
- *   = TEXT               ... is replaced by this in every case of the paragraph that follows
- *   + TEXT               a case: it is replaced by this, and the study is valid
- *   ! TEXT               a case: it is replaced by this, and the study has these problems and no others:
- *       POINTER: DETAIL    with {PATTERN} for what the field with that pattern takes, so that a new row of a table changes no case
+ *   base NAME            the base text for the following cases: a document of tests/support/study_documents.h
+ *   /design/rows         the field that this paragraph tests: its pattern in fields.c
+ *   - TEXT               the first occurrence of TEXT in the base (a line break and following spaces count as one space) ...
+ *   = TEXT               ... is replaced by this TEXT in every following case of the paragraph
+ *   + TEXT               a case: replaced by this TEXT, the study is valid
+ *   ! TEXT               a case: replaced by this TEXT, the study has these problems and no others:
+ *       POINTER: DETAIL    {PATTERN} is replaced by the values that the field accepts, so a new row of a table changes no case
  *
  * In a paragraph without -, TEXT is the whole document. */
 #include <ctype.h>
@@ -22,10 +22,10 @@
 
 struct study_case {
 	const char *file;
-	int line;              /* of the case */
-	const char *field;     /* pattern; "" if it is of none */
-	const char *document;  /* whole */
-	int n;                 /* problems expected, 0: a valid study */
+	int line;              /* line of the case */
+	const char *field;     /* pattern of the tested field; "" if the case tests none */
+	const char *document;  /* the whole document */
+	int n;                 /* number of expected problems; 0: the study is valid */
 	const char **expected; /* (n) "POINTER: DETAIL" */
 };
 
@@ -34,9 +34,9 @@ enum { EXPECTED_MAX = 40 };
 struct cases {
 	const char *file;
 	int line;
-	char *base;            /* that of the file; heap */
-	char *changed;         /* with what the paragraph replaces in all of its cases; heap, NULL: nothing yet */
-	const char *field;     /* of the paragraph */
+	char *base;            /* the current base; heap */
+	char *changed;         /* base with the replacements of this paragraph; heap, NULL: none yet */
+	const char *field;     /* field of the paragraph */
 	const char *from;      /* NULL: the next text is a whole document */
 	struct study_case now; /* the current case; document NULL: none */
 	const char *expected[EXPECTED_MAX];
@@ -59,7 +59,7 @@ static char *one_line(const char *document)
 	return copy;
 }
 
-/* Shows the current case, if there is one: all its problems are known now. */
+/* Passes the current case, if there is one, to the function: all its expected problems have been read. */
 static void finish(struct cases *cases)
 {
 	if (!cases->now.document)
@@ -89,7 +89,7 @@ static void paragraph_end(struct cases *cases)
 	cases->from = NULL;
 }
 
-/* Takes a line that is not blank and no comment. */
+/* Reads a line that is neither blank nor a comment. */
 static void line_take(struct cases *cases, const char *line)
 {
 	const char *text = line + 2;
@@ -123,7 +123,7 @@ static void line_take(struct cases *cases, const char *line)
 	}
 }
 
-/* Reads all cases of a file and shows each to a function; their number.  What is no case fails the test. */
+/* Reads all cases of a file, passes each to a function and returns their number.  A malformed line fails the test. */
 static int study_cases(const char *file, void (*show)(const struct study_case *of, void *context),
                        void *context)
 {
@@ -151,13 +151,13 @@ static int study_cases(const char *file, void (*show)(const struct study_case *o
 static const char *const files[] = {"tests/cases/study_fields.txt", "tests/cases/study_rules.txt"};
 enum { N_FILES = sizeof files / sizeof files[0], FIELDS_MAX = 200 };
 
-/* "POINTER: DETAIL", the shape in which a file has it. */
+/* "POINTER: DETAIL", as files of cases have it. */
 static void line_of(const struct problem *problem, char line[1200])
 {
 	snprintf(line, 1200, "%s: %s", problem->pointer, problem->detail);
 }
 
-/* An expected problem, with what fields take in the place of their patterns in braces. */
+/* An expected problem, with patterns in braces replaced by the values that the fields accept. */
 static void filled(const char *expected, char line[1200])
 {
 	const char *open = strchr(expected, '{'), *close = open ? strchr(open, '}') : NULL;
@@ -174,9 +174,9 @@ static void filled(const char *expected, char line[1200])
 	snprintf(line, 1200, "%.*s%s%s", (int)(open - expected), expected, takes, close + 1);
 }
 
-static int n_wrong; // cases that were not as their file says
+static int n_wrong; // number of cases that failed
 
-/* The files that documents name are those of tests/cases/records. */
+/* Files named by documents are in tests/cases/records. */
 static char *record_file(const void *with, const struct study_source *of, size_t *length,
                          char why[STUDY_WHY_SIZE])
 {
@@ -235,7 +235,7 @@ struct covered {
 	bool valid[FIELDS_MAX], invalid[FIELDS_MAX];
 };
 
-/* Whether a problem is of the field, one of its members or elements, or what it is in. */
+/* Whether a problem is about the field, one of its members or elements, or an object or array that contains it. */
 static bool about(const char *pattern, const char *problem)
 {
 	for (; *pattern && *problem != ':'; pattern++, problem++) {
@@ -262,7 +262,7 @@ static void cover(const struct study_case *of, void *context)
 	covered->invalid[field - fields] |= own;
 }
 
-/* Whether a member of one contact of a row is one of the scene's contact, of the same line of fields.c. */
+/* Whether a member of a row's contact is a member of the scene's contact from the same line of fields.c. */
 static bool of_contact(const struct field *field)
 {
 	char pattern[128];

@@ -1,5 +1,5 @@
-/* unit_study_check.c - members that are right on their own and wrong together, where a case of unit_study_cases.c does not
- * do: limits as numbers, documents too long for a line, pairs of faults. */
+/* unit_study_check.c - members that are valid separately and invalid together, where cases of unit_study_cases.c do
+ * not suffice: limits as numbers, documents too long for a line, pairs of faults. */
 #include <math.h>
 #include <string.h>
 
@@ -18,7 +18,7 @@ static void absent_outputs_are_all_that_apply_in_a_cell(void **state)
 	                                   "\"/law/type\", \"values\": [\"linear\", \"origin_oriented\"]");
 	char *both = study_documents_with(swept, ",\n \"outputs\": [\"demand_amplification\", \"impulse\"]", "");
 	struct pound_study *study = study_documents_study(both);
-	assert_int_equal(study->n_outputs, 3); // all that apply somewhere
+	assert_int_equal(study->n_outputs, 3); // all that apply in some cell
 	study_free(study);
 	free(both);
 	free(swept);
@@ -127,7 +127,7 @@ static void every_fault_is_reported_whatever_else_is_wrong(void **state)
 			     *both = j == i ? study_documents_with(one, "\"kind\"", "\"kind\"")
 			                    : study_documents_with(one, faults[j].from, faults[j].to);
 			study_documents_refused(both, &problems);
-			// cells of a sweep that is not known are not looked at
+			// cells of an invalid sweep are not checked
 			const bool swept = (i == 10 || j == 10) && (i == 4 || j == 4 || i == 5 || j == 5);
 			if (!swept &&
 			    (!problems_at(&problems, faults[i].pointer) || !problems_at(&problems, faults[j].pointer)))

@@ -1,4 +1,4 @@
-/* unit_study_hash.c - what changes the hash of a study and what does not. */
+/* unit_study_hash.c - changes that alter the hash of a study, and changes that do not. */
 #include <string.h>
 
 #include "schema/study/study_json.h"
@@ -112,7 +112,7 @@ static void every_sample_of_a_record_counts(void **state)
 	free(record);
 }
 
-// results made by different builds are compared by their hashes: a new value here shows users that old hashes are void
+// results of different builds are compared by their hashes: a new value here means that existing hashes become invalid
 static void a_hash_stays_what_it_is(void **state)
 {
 	(void)state;

@@ -1,4 +1,4 @@
-/* unit_study_json.c - what a study document says is in the study; its errors are cases of unit_study_cases.c. */
+/* unit_study_json.c - members of a study document are read into the study; errors are tested by unit_study_cases.c. */
 #include <math.h>
 #include <string.h>
 

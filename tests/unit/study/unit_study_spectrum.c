@@ -9,7 +9,7 @@
 
 #define ORDINATES "\"outputs\": [\"impulse\", \"floor_spectrum\"]"
 
-/* The sensitivity document with ordinates at what `frequencies` says. */
+/* The sensitivity document with ordinates at these `frequencies`. */
 static char *document_with(const char *frequencies)
 {
 	char outputs[600];

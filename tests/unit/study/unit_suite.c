@@ -1,5 +1,5 @@
-/* unit_suite.c - suites of recorded ground motions: which signal is which record, what it is multiplied by, and how the
- * document, the run and the result agree about that. */
+/* unit_suite.c - suites of recorded ground motions: which signal is which record, its factor, and the agreement of
+ * document, run and result. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -23,7 +23,7 @@ static const double PI = 3.14159265358979323846;
 #define SCENE \
 	"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, {\"frequency_hz\": 2}], "
 
-/* Three records: half sines of 1 s with peaks 1, 2 and 4 m/s2, the second with steps twice as long. */
+/* Three records: half sines of 1 s with peaks 1, 2 and 4 m/s2; the second has twice the sample step. */
 static char *document(const char *members)
 {
 	char *text = NULL;
@@ -69,7 +69,7 @@ static struct reading *result_with(const char *members)
 
 /* ---- factors ---- */
 
-/* Of records whose peaks are 1, 2 and 4 x 0.5 m/s2, the last one reversed. */
+/* For records with peaks of 1, 2 and 4 x 0.5 m/s2, the last one reversed. */
 static void factors_are_those_of_their_definition(void **state)
 {
 	(void)state;
@@ -82,7 +82,7 @@ static void factors_are_those_of_their_definition(void **state)
 	    {"\"scale\": {\"to\": \"none\"}, ", {1, 1, -0.5}},
 	    {"\"scale\": {\"to\": \"pga\", \"intensity_m_s2\": 3}, ", {3, 1.5, -0.75}},
 	    {"\"factor\": 2, \"scale\": {\"to\": \"pga\", \"intensity_m_s2\": 3}, ", {6, 3, -1.5}},
-	    // spectral accelerations are as 1, 2, 2 but for the coarser samples of the second record, chords of its sine
+	    // spectral accelerations have the ratios 1 : 2 : 2 except for the second record's coarser samples, chords of its sine
 	    {"\"scale\": {\"to\": \"median_sa\", \"intensity_m_s2\": 3, \"period_s\": 0.5}, ", {NAN, NAN, NAN}},
 	};
 	for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
@@ -93,7 +93,7 @@ static void factors_are_those_of_their_definition(void **state)
 			check_near(reading_number(result, "/signals/%d/record", k), k, 0);
 			if (isfinite(cases[c].factor[k]))
 				check_near(factor, cases[c].factor[k], 4 * DBL_EPSILON * fabs(factor));
-			// of a whole suite one factor
+			// one factor for the whole suite
 			else
 				check_near(factor, reading_number(result, "/signals/0/factor") * (k == 2 ? -0.5 : 1),
 				           2 * DBL_EPSILON * fabs(factor));
@@ -102,7 +102,7 @@ static void factors_are_those_of_their_definition(void **state)
 	}
 }
 
-/* A record scaled to a spectral acceleration gives it: the left oscillator has the period and the damping of the scale. */
+/* A record scaled to a spectral acceleration produces it: the left oscillator has the period and the damping of the scale. */
 static void a_scaled_record_has_its_spectral_acceleration(void **state)
 {
 	(void)state;
@@ -114,7 +114,7 @@ static void a_scaled_record_has_its_spectral_acceleration(void **state)
 	int below = 0, equal = 0;
 	for (int k = 0; k < 3; k++) {
 		static const char at[] = "/signals/%d/oscillators/0/displacement_max_free_m";
-		// some hundred steps of rounding
+		// rounding errors of some hundred steps
 		check_near(w * w * reading_number(each, at, k), sa, 1e-12 * sa);
 		const double of_suite = w * w * reading_number(middle, at, k);
 		equal += fabs(of_suite - sa) <= 1e-12 * sa;
@@ -140,10 +140,10 @@ static void factors_come_back_in_the_result(void **state)
 		check_near(reading_number(result, "/suite/records/%d/pga_m_s2", k), peak, 0);
 		check_near(reading_number(result, "/suite/records/%d/reference_m_s2", k), factor * peak, 0);
 		check_near(scaled, 3 / peak, 2 * DBL_EPSILON * scaled);
-		// as it is, then the other way round; the third is reversed to begin with
+		// as recorded, then reversed; the third is reversed from the start
 		check_near(reading_number(result, "/signals/%d/factor", 2 * k), k == 2 ? -scaled : scaled, 0);
 		check_near(reading_number(result, "/signals/%d/factor", 2 * k + 1), k == 2 ? scaled : -scaled, 0);
-		// linear oscillators without contact: what turns round is as large
+		// linear oscillators without contact: the reversed motion has equal peaks
 		for (int i = 0; i < 2; i++)
 			check_near(
 			    reading_number(result, "/signals/%d/oscillators/%d/displacement_max_free_m", 2 * k, i),
@@ -201,7 +201,7 @@ static void a_signal_is_its_record_times_its_factor(void **state)
 	free(text);
 }
 
-/* A record of a suite alone and the same as an excitation of type record. */
+/* A record of a suite gives the same results as the same excitation of type record. */
 static void a_record_of_a_suite_gives_what_it_gives_alone(void **state)
 {
 	(void)state;
@@ -269,7 +269,7 @@ static void files_and_their_samples_are_the_same_study(void **state)
 	study_free(study);
 	study_free(again);
 	free(whole);
-	// without a reader of files it is refused
+	// refused without a reader of files
 	assert_null(study_from_json(text, strlen(text), &problems));
 	assert_int_equal(problems.n, 2);
 	assert_string_equal(problems.list[0].pointer, "/scene/excitation/records/0/file");
@@ -300,7 +300,7 @@ static void a_file_is_known_by_its_hash(void **state)
 	assert_null(reading_text(read, "/scene/excitation/records/1/sha256"));
 	reading_close(read);
 	study_free(study);
-	// with its hash it is the same study, and with another it is refused
+	// with its hash it is the same study; with another hash it is refused
 	study = study_from_document(&(struct study_document){.text = named, .length = length, .files = &files},
 	                            &problems);
 	assert_non_null(study);
@@ -312,7 +312,7 @@ static void a_file_is_known_by_its_hash(void **state)
 	free(named);
 }
 
-/* Oscillators at the frequency of a sine of 10 samples per cycle: the interpolation times sinc^2 of the frequency. */
+/* Oscillators at the frequency of a sine with 10 samples per cycle: interpolation multiplies the sine by sinc^2. */
 static void the_cost_of_linear_interpolation_is_that_of_its_closed_form(void **state)
 {
 	(void)state;

@@ -1,11 +1,11 @@
-/* Studies run for a while. */
+/* Trial runs of studies for a limited time. */
 #include "schema/study/trial.h"
 
 #include "schema/study/cost.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
 
-/* Two of a kind: of 4 signals, which takes less than a millisecond, and of 100,000, which takes seconds. */
+/* A study of 4 signals takes less than a millisecond, one of 100,000 takes seconds. */
 #define TEXT                                                                                                 \
 	"{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3}], " \
 	"\"excitation\": {\"signals\": %d}}}"
@@ -29,13 +29,13 @@ static void a_trial_ends_when_its_time_is_over(void **state)
 	const struct trial stopped = trial_run(longer, true, 0.02, NULL);
 	assert_false(stopped.complete);
 	assert_true(stopped.cpu_s >= 0.02);
-	// a flag of the caller's ends it long before
+	// a flag of the caller ends it much sooner
 	assert_false(trial_run(longer, true, 1000, &unwanted).complete);
 	study_free(shorter);
 	study_free(longer);
 }
 
-/* Small studies are not tried; of others, what takes twice as long as another is estimated to, but for the noise of clocks. */
+/* Small studies have no trial runs; for others, twice the study has about twice the estimate, within the noise of clocks. */
 static void a_trial_corrects_the_count(void **state)
 {
 	(void)state;

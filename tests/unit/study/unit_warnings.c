@@ -1,4 +1,4 @@
-/* unit_warnings.c - what is valid in a study and probably not meant, before and after its run. */
+/* unit_warnings.c - warnings: valid members of a study that are probably not intended, before and after its run. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,10 +25,10 @@
 	", \"frequency_hz\": 2.5}"
 #define SHORT "\"type\": \"white_noise\", \"duration_s\": 2, \"time_step_s\": 0.01, \"signals\": 2"
 
-/* What is said of each; NULL pointer: nothing. */
+/* The warning about each study; NULL pointer: none. */
 static const struct {
 	const char *study, *pointer, *detail;
-	bool run; /* it is known after its run alone */
+	bool run; /* known only after the run */
 } cases[] = {
     {SCENE(BODIES, "", SHORT), NULL, NULL, false},
     {SCENE("{\"frequency_hz\": 2, \"mass_kg\": 2e5}, {\"frequency_hz\": 3}", "", SHORT),
@@ -56,13 +56,13 @@ static const struct {
     {ROW(THREE, "\"gap_m\": 0}, \"contacts\": [{\"levels\": [2, 2]}], \"law\": {\"type\": \"linear\"", SHORT),
      "/scene/contacts", "lists no contact between buildings 1 and 2: they pass through each other", false},
     {ROW(THREE, "\"gap_m\": 0", SHORT), NULL, NULL, false},
-    // nothing is run with pounding
+    // no runs with pounding
     {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT "}}}",
      NULL, NULL, false},
     {"{\"kind\": \"separation\", \"scene\": {\"oscillators\": [" BODIES
      "], \"contact\": {}, \"excitation\": {" SHORT "}}}",
      NULL, NULL, false},
-    // a distribution without an upper end: what one scene in a thousand exceeds
+    // a distribution without an upper end: the value that one scene in a thousand exceeds
     {"{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT
      "}}, \"inputs\": [{\"path\": \"/oscillators/0/frequency_hz\", \"distribution\": {\"type\": "
      "\"lognormal_cov\", \"mean\": 2, \"coefficient_of_variation\": 0.1}}, {\"path\": \"/contact/gap_m\", "
@@ -159,7 +159,7 @@ static void what_was_probably_not_meant_is_said_before_and_after_the_run(void **
 	}
 }
 
-/* The same of a row: of one building, and of neither story of the other. */
+/* For a row: the law of one building, and of neither story of the other. */
 static void a_yield_drift_that_is_never_reached_is_named(void **state)
 {
 	(void)state;
@@ -177,7 +177,7 @@ static void a_yield_drift_that_is_never_reached_is_named(void **state)
 	study_free(study);
 }
 
-/* A yield displacement above all that happens, for the left body and not for the right one. */
+/* A yield displacement above all displacements of the left body, but not of the right one. */
 static void a_yield_displacement_that_is_never_reached_is_named(void **state)
 {
 	(void)state;
