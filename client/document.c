@@ -62,7 +62,7 @@ static char *named_read(const void *with, const struct study_source *of, size_t 
 	const char *document = with, *name = of->file, *end = strrchr(document, '/');
 	char *path = NULL;
 	if (!name) {
-		snprintf(why, STUDY_WHY_SIZE, "is of a server: give the file, too");
+		snprintf(why, STUDY_WHY_SIZE, "is on a server: give the file, too");
 		return NULL;
 	}
 	const int folder = *name == '/' || !end ? 0 : (int)(end - document) + 1;
@@ -164,10 +164,10 @@ void document_complain(const char *subject, const struct reading *problem)
 	double more = reading_number(problem, "/errors_not_listed");
 	const char *detail = reading_text(problem, "/detail"), *title = reading_text(problem, "/title");
 	const char *first = reading_text(problem, "/errors/0/pointer");
-	char faults[64];
+	char errors[64];
 	if (n > 0 && reading_number(problem, "/status") == HTTP_INVALID) {
-		snprintf(faults, sizeof faults, "%.0f fault%s", n + fmax(more, 0.0), n > 1 ? "s" : "");
-		detail = faults;
+		snprintf(errors, sizeof errors, "%.0f error%s", n + fmax(more, 0.0), n > 1 ? "s" : "");
+		detail = errors;
 	}
 	if (!detail)
 		detail = title ? title : "the server gave no reason";

@@ -89,7 +89,7 @@ static void complain_of(const struct evaluation *e, const struct wire_reply *rep
 	if (type)
 		command_complain("%s: %s: %s", e->url, type, message ? message : "");
 	else
-		command_complain("%s: answers with status %ld: %.200s", e->url, reply->status, reply->body);
+		command_complain("%s: the answer has status %ld: %.200s", e->url, reply->status, reply->body);
 	reading_close(r);
 }
 
@@ -180,7 +180,7 @@ static enum outcome read_sizes(const struct evaluation *e, const char *path, con
 		snprintf(pointer, sizeof pointer, "/%s/%d", member, i);
 		const double size = reading_number(r, "%s", pointer);
 		if (!(size >= 0 && size <= 1e6 && size == floor(size)))
-			outcome = MISTAKEN("%s: %s: %s is no size", e->url, path, pointer);
+			outcome = MISTAKEN("%s: %s: %s is not a size", e->url, path, pointer);
 		else
 			sizes->all += sizes->size[i] = (int)size;
 	}
@@ -246,7 +246,7 @@ static enum outcome name_outputs(struct evaluation *e)
 			return MISTAKEN("--outputs: '%s' cannot be the name of an output", e->names[o]);
 		for (int other = 0; other < o; other++)
 			if (strcmp(e->names[o], e->names[other]) == 0)
-				return MISTAKEN("--outputs: '%s' is there twice", e->names[o]);
+				return MISTAKEN("--outputs: '%s' occurs twice", e->names[o]);
 	}
 	return OUTCOME_OK;
 }

@@ -2,12 +2,12 @@
  *
  *   /oscillators/0/frequency_hz = 2
  *
- *   force_amplification: mean 1.071, variance 0.02893, noise share 0.113
+ *   force_amplification: mean 1.071, variance 0.02893, variance fraction due to noise 0.113
  *     input    S1 [95 % interval]       ST [95 % interval]       ST from 0 to 1
  *     f_e       0.101 [ 0.021,  0.180]   0.412 [ 0.351,  0.472]  |#######         |
- *     widest interval: +-0.22 of 125 rows, +-0.16 of 250, +-0.11 of 500, +-0.081 of 1000
- *     twice the rows leave 0.71 of it, 4000 rows half of it
- *     300 runs checked, differences 1e-14 (median) to 2e-13: no index moves by over 3e-15
+ *     widest 95 % interval: +-0.22 with 125 rows, +-0.16 with 250, +-0.11 with 500, +-0.081 with 1000
+ *     twice as many rows multiply its width by 0.71, 4000 rows halve it
+ *     300 runs repeated with half the sample step: relative differences 1e-14 (median) to 2e-13 change no index by more than 3e-15
  *
  * and then a table for each other list of estimates, with the names that the estimates have in the JSON. */
 #include "client/indices_table.h"
@@ -204,8 +204,8 @@ static void print_correlation(const struct reading *result, const char *output)
 static void print_output_head(const struct reading *result, const char *output)
 {
 	static const struct measure measures[] = {{"variance", ", variance %.4g", 1},
-	                                          {"noise_share", ", noise share %.4g", 1},
-	                                          {"ratio_bias", ", ratio bias %.4g", 1},
+	                                          {"noise_share", ", variance fraction due to noise %.4g", 1},
+	                                          {"ratio_bias", ", bias of the ratio estimator %.4g", 1},
 	                                          {"explained", ", cross-validated R2 of the polynomial %.4g", 1},
 	                                          {NULL, NULL, 0}};
 	char *head = cell_output(result, output, measures);
@@ -232,7 +232,7 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];
-	char *line = command_text("%s", "widest interval:");
+	char *line = command_text("%s", "widest 95 % interval:");
 	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
 	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++) {
 		double half = widest(result, accuracy, k);
@@ -240,7 +240,7 @@ static void print_accuracy(const struct reading *result, const char *output)
 			free(line);
 			return;
 		}
-		line = command_append(line, "%s +-%.2g of %.0f%s", k ? "," : "", half,
+		line = command_append(line, "%s +-%.2g with %.0f%s", k ? "," : "", half,
 		                      reading_number(result, "%s/rows/%d", accuracy, k), k ? "" : " rows");
 	}
 	table_prose(INDENT, line);
@@ -248,14 +248,15 @@ static void print_accuracy(const struct reading *result, const char *output)
 	double slope = reading_number(result, "%s/slope", accuracy);
 	double rows = reading_number(result, "%s/rows_to_halve", accuracy);
 	if (isfinite(rows))
-		printf("  twice the rows leave %.2g of it, %.0f rows half of it\n", exp2(slope), rows);
+		printf("  twice as many rows multiply its width by %.2g, %.0f rows halve it\n", exp2(slope), rows);
 	double checked = reading_number(result, "%s/runs_checked", accuracy);
 	double change = reading_number(result, "%s/errors/integration", accuracy);
-	char *checks = command_text("%.0f runs checked", checked);
+	char *checks = command_text("%.0f runs repeated with half the sample step", checked);
 	if (isfinite(change))
-		checks = command_append(checks, ", differences %.2g (median) to %.2g: no index moves by over %.2g",
-		                        reading_number(result, "%s/difference_median", accuracy),
-		                        reading_number(result, "%s/difference_largest", accuracy), change);
+		checks = command_append(
+		    checks, ": relative differences %.2g (median) to %.2g change no index by more than %.2g",
+		    reading_number(result, "%s/difference_median", accuracy),
+		    reading_number(result, "%s/difference_largest", accuracy), change);
 	if (checked > 0.0)
 		table_prose(INDENT, checks);
 	free(checks);
@@ -304,7 +305,7 @@ static void print_ratios(const struct reading *result, const char *output)
 	snprintf(ratios, sizeof ratios, "%s/ratios", output);
 	interval(explained, sizeof explained, result, ratios, "explained", false);
 	if (*explained)
-		printf("  these explain %s of the variance\n", explained + strspn(explained, " "));
+		printf("  together these variables explain %s of the variance\n", explained + strspn(explained, " "));
 	if (reading_text(result, "%s/note", ratios))
 		print_note(reading_text(result, "%s/note", ratios));
 }
@@ -313,7 +314,7 @@ static void print_ratios(const struct reading *result, const char *output)
 static void print_curves(const struct reading *result, const char *output)
 {
 	static const char *const columns[] = {
-	    "input", "from", "to", "lowest", "highest", "mean given it: 0 lowest ... 9 highest", NULL};
+	    "input", "from", "to", "lowest", "highest", "mean output: 0 lowest ... 9 highest", NULL};
 	struct table *table = table_open(1, columns);
 	table_keep_chart(table);
 	for (int j = 0; j < reading_count(result, "%s/conditional_means", output); j++) {
@@ -374,7 +375,7 @@ static void print_outputs(const struct reading *result, const char *name)
 					SECTIONS[k].print(result, output);
 		}
 		for (int k = 0; reading_has(result, "%s/not_applicable/%d", cell, k); k++) {
-			char *line = command_text("%s: does not apply, it %s",
+			char *line = command_text("%s: does not apply: it %s",
 			                          reading_text(result, "%s/not_applicable/%d/name", cell, k),
 			                          reading_text(result, "%s/not_applicable/%d/note", cell, k));
 			putchar('\n');
@@ -414,7 +415,7 @@ static void print_split(const struct reading *result)
 /* How the design grew. */
 static void print_growth(const struct reading *result)
 {
-	static const char *const columns[] = {"rows", "runs", "widest", "index", "input", "output", NULL};
+	static const char *const columns[] = {"rows", "runs", "half_width", "index", "input", "output", NULL};
 	struct table *table = table_open(1, columns);
 	char *sentence = command_text("%.0f rows: %s", reading_number(result, "/stopping/rows"),
 	                              reading_text(result, "/stopping/note"));
@@ -447,7 +448,7 @@ static void print_cost(const struct reading *result)
 	if (!reading_has(result, "/timing"))
 		return;
 	for (int k = 0; k < reading_count(result, "/timing/rows"); k++, before = ", ")
-		printf("%s%.2g%s of %.0f%s", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
+		printf("%s%.2g%s with %.0f%s", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
 		       k ? "" : " s", reading_number(result, "/timing/rows/%d/rows", k), k ? "" : " rows");
 	putchar('\n');
 }
@@ -481,10 +482,10 @@ void given_data_print(const struct reading *result)
 	const double missing = reading_number(result, "/given/samples_missing");
 	printf("%.0f samples", reading_number(result, "/given/samples"));
 	if (missing > 0)
-		printf(", %.0f more without one of their numbers are left out", missing);
+		printf("; %.0f more are left out because a number is missing", missing);
 	putchar('\n');
 	if (reading_has(result, "/given/most_dependent")) {
-		fputs("most dependent inputs: ", stdout);
+		fputs("inputs with the strongest dependence: ", stdout);
 		table_say(reading_text(result, "/given/most_dependent/0"));
 		fputs(" and ", stdout);
 		table_say(reading_text(result, "/given/most_dependent/1"));

@@ -55,7 +55,8 @@ static bool lines_read(struct journal *journal, const char *head, journal_reader
 			reader(to, run, journal->values);
 		else {
 			same = false;
-			command_complain("'%s' line %ld: is no run with %d outputs", journal->path, number, journal->n);
+			command_complain("'%s' line %ld: is not a run with %d outputs", journal->path, number,
+			                 journal->n);
 		}
 		whole += n;
 	}

@@ -90,7 +90,7 @@ static const struct command COMMANDS[] = {
 	 "inputs and outputs of every sample of a study", ""},
 	{"plot", "FIGURE RESULT|ID", "nup" FIGURE_KEYS, false, {0}, plot_figure,
 	 "print a figure of a result as SVG",
-	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history' "
+	 "--names lists the figures.  A result is a file, - or the id of a study on the server; for `history', `force' and `timeline' "
 	 "a file of samples as CSV, or an id."},
 	{"report", "RESULT|ID [STUDY]", "up", false, {0}, report_print,
 	 "a result as one self-contained HTML page",

@@ -47,7 +47,7 @@ static enum outcome expect_study_of(const struct parts *parts, const struct opti
 	enum outcome outcome = OUTCOME_OK;
 	struct pound_study *study = NULL;
 	if (version && !hash) {
-		command_complain("%s: this result is of no study document", document_name(options->argument));
+		command_complain("%s: this result has no study document", document_name(options->argument));
 		outcome = OUTCOME_USAGE;
 	} else if (hash && (study = document_study(options->second, parts->study, parts->n_study, &outcome))) {
 		command_sure(study_hash(study, own) ? own : NULL);
@@ -56,7 +56,7 @@ static enum outcome expect_study_of(const struct parts *parts, const struct opti
 			command_complain("%s is not the study of %s: its hash is %.12s, the result's study_hash is %.12s",
 			                 document_name(options->second), document_name(options->argument), own, hash);
 			if (version && strcmp(version, POUND_VERSION) != 0)
-				command_complain("the result is of pound %s, this is %s", version, POUND_VERSION);
+				command_complain("the result was computed by pound %s, this is %s", version, POUND_VERSION);
 			outcome = OUTCOME_USAGE;
 		}
 	}

@@ -91,7 +91,7 @@ static void print_storeys(const struct reading *result, const char *at)
 			}
 		}
 	putchar('\n');
-	table_prose(0, "storeys, each with the floor above: peak values, means over the signals");
+	table_prose(0, "storeys, each with the floor above it: peak values, means over the signals");
 	table_print(table, 2);
 	table_close(table);
 }
@@ -125,8 +125,9 @@ static void print_contacts(const struct reading *result, const char *at)
 		}
 	}
 	putchar('\n');
-	table_prose(0, "contacts (left: index of the left building; levels: left-right), means over the "
-	               "signals");
+	table_prose(0,
+	            "contacts, means over the signals (left: index of the left building; levels: on the left and "
+	            "on the right building)");
 	table_print(table, 2);
 	table_close(table);
 }
@@ -235,11 +236,12 @@ static void convergence(const struct reading *result)
 		table_number(table, two_digits(cpu / event));
 	}
 	putchar('\n');
-	table_prose(0, "Relative errors against the event solver, means over the signals: of the largest "
-	               "displacement (u_max), ductility demand and impulse, and of the displacement's history "
-	               "over the first seconds of the motion (history_s of the study). setting: time step, of "
-	               "the adaptive solver its tolerance. cpu_s: CPU seconds of one run, also as a multiple of "
-	               "the event solver's.");
+	table_prose(0,
+	            "Relative errors against the event solver, means over the signals: of the largest "
+	            "displacement (u_max), ductility demand and impulse, and of the displacement's history "
+	            "over the first seconds of the motion (history_s of the study). setting: time step, or "
+	            "tolerance of the adaptive solver. cpu_s: CPU seconds of one run; x event: as a multiple of "
+	            "the event solver.");
 	table_print(table, 2);
 	table_close(table);
 	print_orders(result);
@@ -254,7 +256,8 @@ static void floor_spectrum(const struct reading *result)
 	static const char *const members[] = {"frequency_hz", "frequency_ratio", "mean_m_s2", "dirac_peaks_m_s2",
 	                                      "ratio"};
 	cell_failed(result, "");
-	puts("\npseudo-acceleration [m/s2]: means over the signals, percentiles of 'pounding'");
+	putchar('\n');
+	table_prose(0, "pseudo-acceleration [m/s2]: means over the signals; p16, p84: percentiles of `pounding'");
 	struct table *table = table_open(1, columns);
 	for (int k = 0; k < reading_count(result, "/frequencies_hz"); k++) {
 		table_number(table, reading_number(result, "/frequencies_hz/%d", k));
@@ -272,7 +275,10 @@ static void floor_spectrum(const struct reading *result)
 	for (int j = 0; j < reading_count(result, "/peaks") && j < PEAKS; j++)
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
 			table_number(table, reading_number(result, "/peaks/%d/%s", j, members[m]));
-	puts("\npeaks of the spectrum with pounding, and of pulses every half period");
+	putchar('\n');
+	table_prose(0, "peaks of the spectrum with pounding, beside Eq. (21) for ideal pulses every half period; "
+	               "f_1: natural "
+	               "frequency of the body");
 	table_print(table, 2);
 	table_close(table);
 	putchar('\n');
@@ -296,7 +302,7 @@ static const struct list NEEDS[] = {
     {"rules",
      {{"rule", "name"},
       {"gap_m", "gap_m"},
-      {"over mean", "over_mean"},
+      {"gap/mean", "over_mean"},
       {"P(pounding)", "probability"},
       {"95 % from", "low"},
       {"to", "high"}}},
@@ -334,11 +340,15 @@ static void print_list(const struct reading *result, const char *at, const struc
 /* The gap needed in a cell or at a contact, and the gaps that design rules require. */
 static void print_needs(const struct reading *result, const char *at)
 {
-	printf("\ngap needed: mean %.4g m, deviation %.4g m, largest %.4g m of %.0f runs\n",
-	       reading_number(result, "%s/gap_needed/mean_m", at),
-	       reading_number(result, "%s/gap_needed/standard_deviation_m", at),
-	       reading_number(result, "%s/gap_needed/largest_m", at),
-	       reading_number(result, "%s/gap_needed/runs", at));
+	char *line =
+	    command_text("gap needed: mean %.4g m, standard deviation %.4g m, largest of %.0f runs %.4g m",
+	                 reading_number(result, "%s/gap_needed/mean_m", at),
+	                 reading_number(result, "%s/gap_needed/standard_deviation_m", at),
+	                 reading_number(result, "%s/gap_needed/runs", at),
+	                 reading_number(result, "%s/gap_needed/largest_m", at));
+	putchar('\n');
+	table_prose(0, line);
+	free(line);
 	for (size_t k = 0; k < sizeof NEEDS / sizeof NEEDS[0]; k++) {
 		putchar('\n');
 		print_list(result, at, &NEEDS[k]);
@@ -406,7 +416,7 @@ static void separation(const struct reading *result)
 /* Requested and executed work, failures, and work left out with the reason. */
 static void print_work(const struct reading *result)
 {
-	static const char *const columns[] = {"work", "asked", "run", NULL};
+	static const char *const columns[] = {"work", "requested", "computed", NULL};
 	struct table *table = table_open(1, columns);
 	const char *stage, *what;
 	if (!reading_has(result, "/work")) {
@@ -424,7 +434,8 @@ static void print_work(const struct reading *result)
 	table_print(table, 2);
 	table_close(table);
 	for (int i = 0; (what = reading_text(result, "/work/failures/%d/reason", i)); i++) {
-		printf("  failed: %.0f of the runs: ", reading_number(result, "/work/failures/%d/runs", i));
+		const double runs = reading_number(result, "/work/failures/%d/runs", i);
+		printf("  %.0f run%s failed: ", runs, runs == 1 ? "" : "s");
 		table_say(what);
 		putchar('\n');
 	}

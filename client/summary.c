@@ -246,9 +246,9 @@ static int bars(const struct summary *summary, bool print)
 	bool narrow = false;
 	int width = 0, lines = 2;
 	if (print)
-		printf("Share of an output's variance due to an input alone (S1), to an input with its\n"
-		       "interactions (ST), to the randomness of %s (noise); +-: 95 %% interval.\n",
-		       own ? "replicates" : "motions");
+		printf("Fraction of an output's variance due to an input alone (S1), with interactions\n"
+		       "(ST), and to the randomness of %s (noise); +-: 95 %% interval.\n",
+		       own ? "replicates" : "ground motions");
 	for (int j = 0; j < summary->n_inputs; j++) {
 		const int n = table_width(summary->inputs[j]);
 		width = n > width ? n : width;
@@ -267,7 +267,7 @@ static int bars(const struct summary *summary, bool print)
 		free(head);
 	}
 	if (print && narrow)
-		puts("Intervals of what needs more rows are too narrow: few rows hold the variance.");
+		puts("Few rows hold the variance: intervals are too narrow where more rows are needed.");
 	return lines + narrow;
 }
 
@@ -337,7 +337,7 @@ static char *left_out(const struct summary *summary, const struct layout *layout
 		text = command_append(text, " %d of %d inputs, those with the smallest indices;",
 		                      summary->n_inputs - layout->n_columns, summary->n_inputs);
 	if (strlen(text) > nothing)
-		return command_append(text, " --table inputs has all");
+		return command_append(text, " --table inputs shows all");
 	free(text);
 	return NULL;
 }
@@ -408,14 +408,14 @@ static char *intro_of(const struct summary *summary, bool both)
 		places |= summary->rows[k].n > 1;
 		values |= !is_range(summary, &summary->rows[k]);
 	}
-	char *text = command_text("Share of an output's variance due to an input %s%s%s",
+	char *text = command_text("Fraction of an output's variance due to an input %s%s%s",
 	                          both || !summary->any[ST] ? "alone (S1)" : "", both ? " and " : "",
 	                          summary->any[ST] ? "with its interactions (ST)" : "");
 	if (summary->n_cells > 1 || places)
 		text = command_append(text, ", lowest to highest over");
 	if (summary->n_cells > 1)
 		text = command_append(text, " the %d cells of the sweep%s", summary->n_cells, places ? " and" : "");
-	return command_append(text, "%s%s.", places ? " frequencies or stories (their number)" : "",
+	return command_append(text, "%s%s.", places ? " frequencies or stories (number in parentheses)" : "",
 	                      values ? "; +-: 95 % interval" : "");
 }
 
@@ -434,8 +434,8 @@ static char *too_narrow(const struct reading *result)
 		}
 	return n == 0 ? NULL
 	              : command_text(
-	                    "Intervals of %d of %d outputs are too narrow: few rows hold the variance; they "
-	                    "need up to %.0f rows.",
+	                    "Intervals of %d of %d outputs are too narrow, as few rows hold the variance: up to "
+	                    "%.0f rows are needed.",
 	                    n, of, rows);
 }
 
@@ -487,7 +487,8 @@ static char *runs_of(const struct reading *result)
 		                      reading_text(result, "/design/method"));
 	text = command_append(text, "%.0f runs", runs);
 	if (failed > 0)
-		text = command_append(text, ", %.0f failed and %.0f rows left out with them", failed, dropped);
+		text = command_append(text, ", %.0f failed, so %.0f row%s left out", failed, dropped,
+		                      dropped == 1 ? " is" : "s are");
 	if (reading_has(result, "/timing"))
 		text = command_append(text, ", %.3g s with %.0f threads", reading_number(result, "/timing/wall_s"),
 		                      reading_number(result, "/timing/threads"));
@@ -520,7 +521,7 @@ static char *tables_of(const struct reading *result)
 	    RESULT_TABLES(X)
 #undef X
 	};
-	char *line = command_text("More with --table all");
+	char *line = command_text("More tables (--table NAME): all");
 	for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
 		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k]))
 			line = command_append(line, ", %s", names[k]);
@@ -541,7 +542,8 @@ static void below_find(const struct reading *result, struct paragraphs *below)
 	if (*widest.narrower)
 		paragraph_add(below, command_text("%s", widest.narrower));
 	paragraph_add(below, tables_of(result));
-	paragraph_add(below, command_text("Figures: pound plot, or pound report for all of it on one page"));
+	paragraph_add(below,
+	              command_text("Figures: `pound plot'. All tables and figures on one page: `pound report'."));
 }
 
 /* ---- the screen ---- */
@@ -563,7 +565,7 @@ void summary_print(const struct reading *result)
 	putchar('\n');
 	if (!summary.any[S1] && !summary.any[ST]) {
 		const char *note = reading_text(result, "/cells/0/outputs/0/note");
-		puts("No index to quote has a value.");
+		puts("No index has a value.");
 		if (note)
 			table_prose(0, note);
 	} else if (summary.n_cells == 1 && bars(&summary, false) <= lines)

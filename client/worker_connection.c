@@ -83,9 +83,8 @@ static void place_of_launcher(struct place *place)
 {
 	const char *given = getenv("POUND_WORKER");
 	if (!given)
-		FAIL("it is started by a launcher, which says in POUND_WORKER where to connect, see `pound run "
-		     "--help', "
-		     "--launcher; or with --connect and --token-file");
+		FAIL("POUND_WORKER is not set: start pound-worker by `pound run --launcher' or poundd --launcher, or "
+		     "give --connect and --token-file");
 	const bool fits = snprintf(place->text, sizeof place->text, "%s", given) < (int)sizeof place->text;
 	const char *token = fits ? cut(place->text) : NULL;
 	if (!token || strlen(token) != MESSAGE_TOKEN_SIZE || !split(place))
@@ -172,7 +171,7 @@ static int connect_again(struct place *place, const char *token_file)
 			close(s);
 		const bool ended = pid > 0 && waitpid(pid, &status, 0) == pid;
 		if (ended && WIFSIGNALED(status))
-			complain("what served the connection was ended by signal %d", WTERMSIG(status));
+			complain("the process of the connection was ended by signal %d", WTERMSIG(status));
 		if (ended && (status == 0 || time(NULL) - start >= LASTED))
 			pause = PAUSE_MIN;
 		usleep(1000 * pause);
@@ -257,7 +256,9 @@ struct worker_options worker_options(int argc, char **argv)
 	static const struct argp_option rows[] = {
 	    {"threads", 't', "N", 0, "compute with N threads (default: cores this process may use)", 0},
 	    {"connect", 'c', "HOST:PORT", 0,
-	     "compute for a `pound run' or poundd that listens there by --worker-listen, whenever it does", 0},
+	     "compute for the `pound run' or poundd that listens at this address (--worker-listen), again and "
+	     "again",
+	     0},
 	    {"token-file", 'f', "FILE", 0, "token of that program's --worker-token-file", 0},
 	    {0}};
 	static const struct argp argp = {.options = rows,

@@ -335,7 +335,7 @@ static void pass_on(struct ranks *r, struct packet *p)
 		if (p->wire.head.type != MESSAGE_BLOCK || rank == to)
 			send_packet(r, rank, p, tag_of(study));
 	if (to == 0 && !obey(r, p))
-		fail("a message of the coordinator makes no sense");
+		fail("a message of the coordinator is invalid");
 }
 
 static void coordinate(struct ranks *r)
@@ -380,7 +380,7 @@ static bool question_take(struct ranks *r)
 		alarm(END_MAX);
 		thread_pool_stop(r->pool);
 	} else if (!obey(r, p))
-		fail("a message of rank 0 makes no sense");
+		fail("a message of rank 0 is invalid");
 	packet_free(p);
 	return true;
 }

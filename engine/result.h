@@ -247,7 +247,7 @@ struct pound_accuracy {
 	X(POUND_NOTE_NOT_RANDOM,                                                              \
 	  "the excitation is not random, so there is no noise to correct for")                \
 	X(POUND_NOTE_ONE_SIGNAL,                                                              \
-	  "with one signal its noise cannot be estimated, so all indices are those of single responses and include it; for those of the mean response use 2 signals or more, or \"auto\"")          \
+	  "the noise of one signal cannot be estimated, so all indices describe the response to single ground motions and include this noise; for indices of the mean response use 2 signals or more, or \"auto\"")          \
 	X(POUND_NOTE_SHARED_SIGNAL,                                                           \
 	  "the samples of a row share one signal: besides the raw indices only S1 can be estimated; for all others, and for indices of the mean response, use 2 signals or more, or \"auto\"") \
 	X(POUND_NOTE_NO_VARIANCE,                                                             \

@@ -51,7 +51,7 @@ async function ask(path, options = {}) {
 		if (!reached) $("server").textContent = "the server answers again";
 		reached = true;
 		if (answer.status === 401) {
-			asking ??= dialog(sessionStorage.getItem("token") ? "The server does not know this token." : "This server asks for a token.", "go on", true).finally(() => { asking = null; });
+			asking ??= dialog(sessionStorage.getItem("token") ? "The server does not know this token." : "This server asks for a token.", "continue", true).finally(() => { asking = null; });
 			const token = await asking;
 			if (token === null) return answer;
 			sessionStorage.setItem("token", token);
@@ -314,7 +314,7 @@ async function finished() {
 
 async function study() {
 	$("cancel").onclick = async () => {
-		if (await dialog("Cancel this study? What it has computed is lost.", "cancel the study")) await ask(`${base}/cancel`, { method: "POST" });
+		if (await dialog("Cancel this study? It cannot be continued.", "cancel the study")) await ask(`${base}/cancel`, { method: "POST" });
 	};
 	$("delete").onclick = async () => {
 		if (!await dialog("Delete this study and its result?", "delete the study")) return;
@@ -401,7 +401,7 @@ async function judge(number) {
 	$("verdict").className = answer.ok ? "" : "fault";
 	$("verdict").textContent = answer.ok
 		? `valid: ${reply.runs_total.toLocaleString("en")} runs, about ${Number(reply.estimated_cpu_s.toPrecision(2)).toLocaleString("en")} s of one core, ${size(reply.estimated_bytes)} stored, ${size(reply.estimated_memory_bytes)} of memory${reply.warnings ? "; warnings, each a button that leads to its place:" : ""}`
-		: `${reply.errors ? "faults, each a button that leads to its place:" : reply.detail}${reply.errors_not_listed ? `, and ${reply.errors_not_listed} more` : ""}`;
+		: `${reply.errors ? "errors, each a button that leads to its place:" : reply.detail}${reply.errors_not_listed ? `, and ${reply.errors_not_listed} more` : ""}`;
 	const problems = (answer.ok ? reply.warnings : reply.errors) ?? (reply.line ? [{ pointer: "", ...reply }] : []);
 	$("faults").replaceChildren(...problems.map(problem => fault(reply.line ? { ...problem, line: reply.line, column: reply.column } : problem)));
 }

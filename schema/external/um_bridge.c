@@ -178,7 +178,8 @@ static void respond(struct um_bridge *b)
 	snprintf(pointer, sizeof pointer, "%s/outputs", b->place);
 	for (int o = 0; o < study->n_outputs; o++)
 		if (pound_output_has_ordinates(study->outputs[o])) {
-			REFUSE(b, INPUT, pointer, "a model has no output \"%s\": only a sensitivity study has it",
+			REFUSE(b, INPUT, pointer,
+			       "output \"%s\" is not available from a model, only in a sensitivity study",
 			       pound_output_name(study->outputs[o]));
 			return;
 		}
@@ -209,7 +210,7 @@ static void study_read(struct um_bridge *b, const char *text, size_t length)
 		refuse_at(b, error, b->place, problems);
 	else if (b->study->kind != POUND_KIND_SENSITIVITY) {
 		problems_add(&b->problems, pointer,
-		             "must be \"sensitivity\": the inputs of a model are those of a study");
+		             "must be \"sensitivity\": a model takes its inputs from a sensitivity study");
 		b->error = error;
 	} else
 		respond(b);
@@ -334,8 +335,8 @@ static void check_runs(struct um_bridge *b, const struct pound_result *result)
 	};
 	for (int kind = 0; kind < POUND_N_FAILURES; kind++)
 		if (result->work.failed[kind])
-			REFUSE(b, OUTPUT, "", "%lld of the runs: %s", (long long)result->work.failed[kind],
-			       pound_status_text(failures[kind]));
+			REFUSE(b, OUTPUT, "", "%lld run%s failed: %s", (long long)result->work.failed[kind],
+			       result->work.failed[kind] == 1 ? "" : "s", pound_status_text(failures[kind]));
 }
 
 /* Takes the outputs of the study that was run.
@@ -356,7 +357,7 @@ void um_bridge_result(struct um_bridge *b, const struct pound_result *result)
 			const double value = result->cells[cell].outputs[o];
 			b->outputs[b->n_outputs++] = value;
 			if (!isfinite(value))
-				REFUSE(b, OUTPUT, "", "%s of cell %d has no value: the response that it is a ratio to is 0",
+				REFUSE(b, OUTPUT, "", "%s of cell %d has no value: the response in its denominator is 0",
 				       pound_output_name(b->study->outputs[o]), cell);
 		}
 }

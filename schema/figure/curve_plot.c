@@ -96,7 +96,7 @@ void plot_given(struct plot *plot)
 		top = plot->d.height + 14;
 		if (o == 0)
 			snprintf(plot->sentence, sizeof plot->sentence,
-			         "%.100s: its mean is %s; given one input it lies in [%s, %s], bands included.", label,
+			         "%.100s: mean %s; given one input, the mean lies in [%s, %s], bands included.", label,
 			         draw_number(mean, title), draw_number(range.low, number[0]),
 			         draw_number(range.high, number[1]));
 	}
@@ -211,7 +211,7 @@ void plot_widths(struct plot *plot)
 	    (struct key){.name = "S1: hollow, dashed", .pen = {.ink = INK_MUTED, .width = 1.2, .dash = "6 3"}};
 	keys[n_keys++] = (struct key){.name = "ST: filled", .pen = {.ink = INK_MUTED, .width = 1.2}};
 	if (isfinite(goal)) {
-		snprintf(asked, sizeof asked, "asked for: %s", draw_number(goal, number));
+		snprintf(asked, sizeof asked, "requested: %s", draw_number(goal, number));
 		keys[n_keys++] = (struct key){.name = asked, .pen = GOAL};
 	}
 	cJSON_ArrayForEach(input, plot_member(outputs[0], "inputs"))
@@ -228,8 +228,7 @@ void plot_widths(struct plot *plot)
 		panel_place(&plot->d, columns, o, top, &panel);
 		draw_widths(plot, outputs[o], &panel);
 	}
-	snprintf(plot->sentence, sizeof plot->sentence,
-	         "%.0f rows: the widest interval of %.80s reaches %s to either side.",
+	snprintf(plot->sentence, sizeof plot->sentence, "%.0f rows: the widest 95 %% interval of %.80s is +-%s.",
 	         plot_number(plot_member(plot->result, "design"), "rows"), plot_text(outputs[0], "name"),
 	         draw_number(plot_number(plot_member(plot_member(outputs[0], "accuracy"), "errors"), "sampling"),
 	                     number));

@@ -21,13 +21,13 @@ const struct figure_row figure_rows[] = {
 	{"spectra",   "floor_spectrum", " axis spectra width ",         NULL,                false, "floor response spectra with and without pounding", NULL},
 	{"history",   "floor_spectrum", " signal from to width ",     NULL,                true,  "motion, clear distance and contact force in time", "it is drawn from the samples of a study with \"histories\": true (pound run --samples FILE)"},
 	{"force",     "floor_spectrum", " signal from to width ",     NULL,                true,  "contact force against overlap, a loop for each contact", "it is drawn from the samples of a study with \"histories\": true (pound run --samples FILE)"},
-	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding", "it is of two oscillators, not of a row of buildings"},
-	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding", "it is of a row of buildings"},
-	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level", "it is of a row of buildings with contacts"},
+	{"responses", "response",       " cell x width ",             NULL,                false, "peak displacements with and without pounding", "it shows two oscillators, not a row of buildings"},
+	{"heights",   "response",       " cell width ",               NULL,                false, "story drifts and floor accelerations over the height, with and without pounding", "it shows a row of buildings"},
+	{"impacts",   "response",       " cell width ",               NULL,                false, "first impact, number and largest impulse of impacts by level", "it shows a row of buildings with contacts"},
 	{"timeline",  "response",       " cell signal from to width ", NULL,              true,  "every contact in time, by its level and its impulse", "it is drawn from the samples (pound run --samples FILE)"},
 	{"errors",    "convergence",    " quantity width ",           NULL,                false, "error of each solver against its CPU time", NULL},
-	{"separation", "separation",    " cell contact width ",       "pounding",          false, "probability of pounding over the gap, and the gaps that rules ask for", NULL},
-	{"fragility", "separation",     " cell contact width ",       "fragility",         false, "fragility curves over a swept intensity, a line for each gap, and the runs' own shares", "it needs \"intensity\", the path of a sweep"},
+	{"separation", "separation",    " cell contact width ",       "pounding",          false, "probability of pounding over the gap, and the gaps that design rules require", NULL},
+	{"fragility", "separation",     " cell contact width ",       "fragility",         false, "fragility curves over a swept intensity, a line for each gap, and the fractions of runs that pound", "it needs \"intensity\", the path of a sweep"},
 	{"suite",     "any",            " width ",                    NULL,                true,  "response spectra of a study's ground motions, by pound motion --periods", "it is drawn from a table of its own (pound motion --periods)"},
 	{0},
 };
@@ -129,9 +129,9 @@ static void absent(const struct figure_row *row, const cJSON *result, bool sampl
 {
 	const char *kind = plot_text(result, "kind"), *before = "; it has: ";
 	char why[120];
-	snprintf(why, sizeof why, "it is of studies of kind \"%s\", not \"%.40s\"", row->kind, kind);
+	snprintf(why, sizeof why, "it shows studies of kind \"%s\", not \"%.40s\"", row->kind, kind);
 	if (strcmp(row->kind, kind) == 0 || strcmp(row->kind, "any") == 0)
-		snprintf(why, sizeof why, "%s", row->needs ? row->needs : "what it shows is missing");
+		snprintf(why, sizeof why, "%s", row->needs ? row->needs : "the result lacks its numbers");
 	size_t n = (size_t)snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s",
 	                            row->name, why);
 	for (const struct figure_row *has = figure_rows; has->name; has++)

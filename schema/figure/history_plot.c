@@ -110,7 +110,8 @@ void plot_history(struct plot *plot)
 		return;
 	const double *time = plot_table_column(&table, "time_s");
 	if (!plot_table_column(&table, "u_m")) {
-		snprintf(plot->fault, sizeof plot->fault, "the samples are no histories: they have no column u_m");
+		snprintf(plot->fault, sizeof plot->fault,
+		         "the samples are not time histories: they have no column u_m");
 		return;
 	}
 	for (int k = 0; k < table.n; k++)
@@ -245,10 +246,11 @@ void plot_force(struct plot *plot)
 	across.low = across.low > -1e-6 * across.high ? 0 : across.low;
 	up.low = up.low > -1e-6 * up.high ? 0 : up.low;
 	if (n)
-		snprintf(more, sizeof more, "ground motion %d, %d contacts; the one of the largest force is thick",
-		         table.signal, n);
+		snprintf(more, sizeof more,
+		         "ground motion %d, %d contacts; the contact with the largest force is thick", table.signal,
+		         n);
 	else
-		snprintf(more, sizeof more, "ground motion %d: no contact, or none of which the overlap is known",
+		snprintf(more, sizeof more, "ground motion %d: no contact, or no contact with a known overlap",
 		         table.signal);
 	plot_head(plot, "Contact force against overlap", more);
 	struct panel panel = {.height = fmin(fmax(0.7 * plot->d.width, 300), 460),

@@ -214,7 +214,7 @@ static void say_largest(struct plot *plot, const cJSON *output)
 	}
 	if (largest)
 		snprintf(plot->sentence, sizeof plot->sentence,
-		         "Of %.100s the largest total index is that of %.160s; the noise of signals makes %s of the "
+		         "Largest total index of %.100s: input %.160s. The noise of signals accounts for %s of the "
 		         "variance.",
 		         plot_output_name(output, name), value_text(largest, &PARTS[1], text),
 		         draw_number(plot_number(output, "noise_share"), number));
@@ -246,7 +246,7 @@ void plot_indices(struct plot *plot)
 	}
 	if (curves) {
 		y = n_rows ? plot->d.height + 16 : y;
-		snprintf(text, sizeof text, "indices of the %.100s against frequency, a panel for each input",
+		snprintf(text, sizeof text, "indices of the %.100s over frequency, a panel for each input",
 		         plot_text(outputs[n_plain], "name"));
 		for (char *c = text; *c; c++)
 			*c = *c == '_' ? ' ' : *c;

@@ -264,7 +264,7 @@ void plot_head(struct plot *plot, const char *title, const char *more)
 			    lines[k], HEAD_LINES);
 	if (partial) {
 		char rows[80];
-		snprintf(rows, sizeof rows, "INTERMEDIATE RESULT of %.0f rows of %.0f", plot_number(partial, "rows"),
+		snprintf(rows, sizeof rows, "INTERMEDIATE RESULT, %.0f of %.0f rows", plot_number(partial, "rows"),
 		         plot_number(partial, "rows_most"));
 		draw_text(&plot->d, &(struct label){.x = PLOT_MARGIN, .y = plot->y, .bold = true, .fit = width},
 		          rows);

@@ -88,7 +88,7 @@ bool plot_table(struct plot *plot, struct plot_table *table)
 		return false;
 	if (!table_read(plot, "signal,time_s,", from, to, table))
 		snprintf(plot->fault, sizeof plot->fault,
-		         "the samples are no histories: they begin with signal,time_s");
+		         "the samples are not time histories: their first columns must be signal,time_s");
 	return !*plot->fault;
 }
 
@@ -100,6 +100,7 @@ bool plot_table_whole(struct plot *plot, struct plot_table *table)
 {
 	table->signal = EVERY_SIGNAL;
 	if (!table_read(plot, "signal,", -INFINITY, INFINITY, table))
-		snprintf(plot->fault, sizeof plot->fault, "the samples have no signals: they begin with signal,");
+		snprintf(plot->fault, sizeof plot->fault,
+		         "the samples have no signals: their first column must be signal");
 	return !*plot->fault;
 }

@@ -300,7 +300,7 @@ static void put_figures(struct report *report)
 	}
 	if (n > CELLS_OF_ALL)
 		put_element(report, "p class=\"muted\"",
-		            "Left out here: further figures of single cells, which pound plot draws of the result.");
+		            "Not shown: further figures of single cells; pound plot draws them from the result.");
 }
 
 /* ---- tables ---- */
@@ -371,8 +371,8 @@ static bool put_table(struct report *report, const char *table, const char *titl
 static void put_tables(struct report *report)
 {
 	bool any = false;
-	put(report,
-	    "<h2>Tables</h2>\n<p class=\"muted\">Five digits of each number; all are in the result.</p>\n");
+	put(report, "<h2>Tables</h2>\n<p class=\"muted\">Numbers are rounded to five digits here, not in the "
+	            "result.</p>\n");
 #define X(name) any |= put_table(report, #name, #name);
 	RESULT_TABLES(X)
 #undef X
@@ -395,7 +395,7 @@ static void put_accuracy(struct report *report)
 	cJSON_ArrayForEach(value, errors)
 	{
 		char label[80];
-		snprintf(label, sizeof label, "error by %.60s", value->string);
+		snprintf(label, sizeof label, "error from %.60s", value->string);
 		put_member(report, errors, value->string, label);
 	}
 	table_end(report);
@@ -406,10 +406,10 @@ static void put_work(struct report *report)
 	const cJSON *work = plot_member(report->result, "work"), *stage, *line;
 	if (!work)
 		return;
-	put(report, "<h2>What was run, and what was left out</h2>\n");
-	table_begin(report, "What was run",
-	            "<thead><tr><th scope=\"col\">of what</th><th scope=\"col\">asked for</th>"
-	            "<th scope=\"col\">run</th></tr></thead>\n<tbody>\n");
+	put(report, "<h2>What was computed, and what was left out</h2>\n");
+	table_begin(report, "Runs requested and computed",
+	            "<thead><tr><th scope=\"col\">runs</th><th scope=\"col\">requested</th>"
+	            "<th scope=\"col\">computed</th></tr></thead>\n<tbody>\n");
 	cJSON_ArrayForEach(stage, work)
 	{
 		char numbers[96];
@@ -441,7 +441,7 @@ static void put_study(struct report *report, const char *study, size_t n_study)
 	if (!study) {
 		put_element(
 		    report, "p",
-		    "It was not given when this report was made; `pound report RESULT STUDY.json` shows it, too.");
+		    "It was not given when this report was made; `pound report RESULT STUDY.json` includes it.");
 		return;
 	}
 	put(report, "<pre tabindex=\"0\">");

@@ -29,7 +29,8 @@ static const cJSON *needs_of(struct plot *plot, const cJSON *cell)
 	if (contacts)
 		snprintf(plot->fault, sizeof plot->fault, "contact must be a whole number in [0, %d]", n - 1);
 	else
-		snprintf(plot->fault, sizeof plot->fault, "this result has no contacts: it is of two oscillators");
+		snprintf(plot->fault, sizeof plot->fault,
+		         "this result has no contacts: its scene is two oscillators");
 	return NULL;
 }
 
@@ -108,14 +109,15 @@ void plot_separation(struct plot *plot)
 {
 	char sweep[PLOT_TEXT], place[PLOT_TEXT], names[RULES_MOST][PLOT_TEXT], number[3][32];
 	struct key keys[1 + RULES_MOST] = {
-	    {.name = "share of runs that pound, 95 % band", .pen = {.ink = 0, .width = 2}, .band = true}};
+	    {.name = "fraction of runs that pound, 95 % band", .pen = {.ink = 0, .width = 2}, .band = true}};
 	const cJSON *chosen = plot_cell(plot), *cell = chosen ? needs_of(plot, chosen) : NULL, *at_5 = NULL, *gap;
 	if (!cell)
 		return;
 	for (int k = 0; k < RULES_MOST; k++)
 		keys[1 + k] = (struct key){.name = spaced(plot_text(rule_at(cell, k), "name"), names[k]),
 		                           .pen = {.ink = (enum ink)(k + 1), .width = 1.8, .dash = draw_dash(k + 1)}};
-	plot_head(plot, "How wide a gap", place_text(cell, plot_sweep_text(chosen, 0, NULL, sweep), place));
+	plot_head(plot, "Probability of pounding and gap needed",
+	          place_text(cell, plot_sweep_text(chosen, 0, NULL, sweep), place));
 	const double top = draw_legend(&plot->d, 1 + RULES_MOST, keys, plot->y) + 8;
 	struct panel panel = {.height = 360};
 	panel_place(&plot->d, 1, 0, top, &panel);
@@ -228,7 +230,7 @@ void plot_fragility(struct plot *plot)
 	if (first)
 		snprintf(
 		    plot->sentence, sizeof plot->sentence,
-		    "%.100s: half of the motions of intensity %s pound, dispersion %s. Marks: what the runs counted.",
+		    "%.100s: half of the motions of intensity %s pound, dispersion %s. Marks: fractions of the runs.",
 		    names[0], draw_number(plot_number(first, "median"), number[0]),
 		    draw_number(plot_number(first, "dispersion"), number[1]));
 	else

@@ -32,8 +32,8 @@ static bool spectra_read(struct plot *plot, struct spectra *spectra)
 	             *psa = plot_table_column(&table, "psa_m_s2");
 	if (!period || !psa || table.n == 0) {
 		snprintf(plot->fault, sizeof plot->fault,
-		         "the samples are no spectra of ground motions: columns period_s and psa_m_s2, by pound "
-		         "motion --periods");
+		         "the samples are not spectra of ground motions: expected columns period_s and psa_m_s2, as "
+		         "pound motion --periods prints them");
 		return false;
 	}
 	int n = 1;

@@ -59,7 +59,7 @@ static void contacts_read(struct plot *plot, const struct plot_table *table, str
 	if (!contacts->impulse || !contacts->duration || !contacts->speed || !contacts->building ||
 	    !contacts->level || !contacts->right_level || !cell) {
 		snprintf(plot->fault, sizeof plot->fault,
-		         "the samples have no contacts: a column impulse_n_s and others");
+		         "the samples have no contacts: expected a column impulse_n_s and others");
 		return;
 	}
 	for (int k = 0; order && k < table->n; k++)

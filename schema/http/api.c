@@ -43,10 +43,10 @@ const struct api_operation api_operations[] = {
 	                 "all rows of inputs with their outputs, enough to recompute the raw indices", " 200 304 ",
 	                 .media = " text/csv application/octet-stream ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_motions] = {"GET", "/v1/studies/{id}/motions", "motions",
-	                 "the ground motions of a study, made once more, or their response spectra", " 200 304 ",
+	                 "the ground motions of a study, computed again, or their response spectra", " 200 304 ",
 	                 .media = " text/csv application/octet-stream text/plain ", .faults = STORED | F(CONFLICT)},
 	[API_figures] = {"GET", "/v1/studies/{id}/figures", "figures",
-	                 "the figures that the result has", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
+	                 "the figures available for the result", " 200=Figures 304 ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_figure]  = {"GET", "/v1/studies/{id}/figures/{name}", "figure",
 	                 "a figure of the result", " 200 304 ", .media = " image/svg+xml ", .faults = STORED | F(NOT_READY) | F(CONFLICT)},
 	[API_cancel]  = {"POST", "/v1/studies/{id}/cancel", "cancel",
@@ -81,7 +81,7 @@ const struct api_operation api_operations[] = {
 #define LISTED(operation) \
 	{operation, "status",          "query",  " queued running succeeded failed cancelled ", 0, 0, NULL, .text = "only studies with this status", .blank = true}, \
 	{operation, "limit",           "query",  NULL, 1, 100, "20", .text = "number of studies per page", .blank = true}, \
-	{operation, "cursor",          "query",  NULL, 0, 0, NULL, .text = "the member next of the previous page", .digits = 16, .blank = true}, \
+	{operation, "cursor",          "query",  NULL, 0, 0, NULL, .text = "member `next` of the previous page", .digits = 16, .blank = true}, \
 	{operation, "name",            "query",  NULL, 0, 0, NULL, .text = "only studies with this text in their name; case matters", .blank = true}, \
 	{operation, "hash",            "query",  NULL, 0, 0, NULL, .text = "only studies with this study_hash: the same study, whatever its name and form", .digits = 64, .blank = true}
 
@@ -105,7 +105,7 @@ const struct api_argument api_arguments[] = {
 	{"motions", "format",          "query",  " csv npy at2 ", 0, 0, NULL, .text = "format of the answer; takes precedence over Accept; at2: one signal as a PEER file"},
 	{"motions", "cell",            "query",  NULL, 0, STUDY_CELLS_MAX - 1, "0", .text = "cell of the sweeps"},
 	{"motions", "row",             "query",  NULL, 1, POUND_ROWS_MAX, "1", .text = "row of the design"},
-	{"motions", "signal",          "query",  NULL, 0, POUND_ROWS_MAX, NULL, .text = "one signal (default: all; of at2 the first)"},
+	{"motions", "signal",          "query",  NULL, 0, POUND_ROWS_MAX, NULL, .text = "one signal (default: all; format at2: the first)"},
 	{"motions", "periods",         "query",  NULL, 0, 0, NULL, .text = "response spectra instead, as CSV: up to 100 periods in seconds between commas, of oscillators with 5 % damping"},
 	{"motions", "If-None-Match",   "header", NULL, 0, 0, NULL, .text = "a previous ETag; the answer is 304 if nothing has changed"},
 	{"figures", "partial",         "query",  " true false ", 0, 0, "false", .text = "true: if there is no result yet, or the study failed or was cancelled, use the rows completed so far"},

@@ -483,7 +483,7 @@ static void *waiting_run(void *of)
 		else if (!next) // the worker will reconnect
 			say(g, "closed: no thread or descriptor to wait for further workers");
 		else if (entry == LISTEN_OTHER_TOKEN)
-			turn_away(g, "the token from %s is not the one of --worker-token-file", g->peer);
+			turn_away(g, "the token from %s differs from the one in --worker-token-file", g->peer);
 		set_socket(g, -1);
 		if (entry != LISTEN_TOKEN && !c->stopping)
 			pause_for(g, -1, REFUSED_MS);

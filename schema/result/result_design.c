@@ -125,9 +125,9 @@ static void write_growth(struct writer *w, const struct pound_study *study, cons
 	             reached && order && last->half_width < 0 ? "the order of the inputs by ST is certain: " : "",
 	             which, of, until->half_width);
 	if (last->half_width >= 0)
-		snprintf(note + n, sizeof note - (size_t)n, "; the widest is that of %s of input %s for output %s",
-		         index_names[last->index], study->inputs[last->input].name,
-		         study_output_name(study, last->output, output));
+		snprintf(note + n, sizeof note - (size_t)n,
+		         "; the widest is the interval of %s of input %s, output %s", index_names[last->index],
+		         study->inputs[last->input].name, study_output_name(study, last->output, output));
 	writer_number(w, "half_width", until->half_width);
 	writer_whole(w, "max_runs", until->max_runs);
 	if (order)

@@ -71,13 +71,13 @@ void widest_interval_find(const struct reading *result, struct widest_interval *
 	if (!isfinite(widest.last))
 		return;
 	if (isfinite(widest.rows_to_halve))
-		snprintf(more, sizeof more, "; %.0f rows would halve it", widest.rows_to_halve);
-	snprintf(text->size, WIDEST_TEXT, "The widest 95 %% interval is +-%.2g, that of %s of %s in %s%s.",
+		snprintf(more, sizeof more, "; %.0f rows would halve its width", widest.rows_to_halve);
+	snprintf(text->size, WIDEST_TEXT, "The widest 95 %% interval is +-%.2g, of %s of input %s, output %s%s.",
 	         widest.last, widest.index, widest.input ? widest.input : "?",
 	         widest.output ? widest.output : "?", more);
 	if (widest.last > 1.1 * widest.least)
 		snprintf(text->narrower, WIDEST_TEXT,
-		         "With %.0f rows it was +-%.2g, narrower but not better: a few rare rows make much of the "
+		         "With %.0f rows it was +-%.2g, narrower but not better: a few rare rows hold much of the "
 		         "variance, and so few rows may not contain them. Quote the interval of %.0f rows.",
 		         widest.rows_least, widest.least, widest.rows);
 }

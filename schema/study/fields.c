@@ -87,7 +87,7 @@ static const char *until_output_name(int row)
 	 FIELD_OPEN_MIN, "m", .text = "yield displacement, instead of target_demand"},                       \
 	{pattern "/corrections", FIELD_COUNT, law + IN_LAW(corrections), 1, 0, 100, FIELD_CLOSED, "",         \
 	 .text = "number of corrections of the yield displacement found from target_demand; 2 or more: largest number of steps of a "  \
-	         "search that ends at that demand"}
+	         "search for exactly that demand"}
 
 #define CONTACT_ROWS(pattern, at)                                                                        \
 	{pattern "/model", FIELD_CHOICE, at(model), 0, 0, 0, FIELD_CLOSED, "",                                \
@@ -108,11 +108,11 @@ static const char *until_output_name(int row)
 	{pattern "/gap_m", FIELD_REAL, at(gap), 0, 0, INFINITY, FIELD_CLOSED, "m",                            \
 	 .text = "clear distance between the bodies at rest"},                                                \
 	{pattern "/tension", FIELD_BOOL, at(tension), 1, 0, 1, FIELD_CLOSED, "",                              \
-	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap does; false: contact ends when its force falls to 0"}, \
+	 .text = "true: the dashpot may pull just before separation, and contact ends when the overlap is 0; false: contact ends when its force falls to 0"}, \
 	{pattern "/second_stiffness_ratio", FIELD_REAL, at(second_stiffness_ratio), 0.3, 0, 1, FIELD_CLOSED, "", \
 	 .text = "post-yield stiffness of the bilinear model over K", LATER},                   \
 	{pattern "/yield_overlap_m", FIELD_REAL, at(yield_overlap), 0, 0, INFINITY, FIELD_OPEN_MIN, "m",         \
-	 .text = "yield overlap of the bilinear model; required there", LATER},                               \
+	 .text = "yield overlap of the bilinear model, which requires it", LATER},                               \
 	{pattern "/speed_floor_m_s", FIELD_REAL, at(speed_floor), 0.001, 0, INFINITY, FIELD_OPEN, "m/s",      \
 	 .text = "lower bound of v in a dashpot D p'/v; rigid: lowest approach speed of an impact that is counted as a contact", LATER}
 
@@ -181,7 +181,7 @@ const struct field fields[] = {
 	 .text = "modes that have the damping ratio, ascending (default: 1, 3; at most the number of storeys); only with damping rayleigh",
 	 .fixed = "it is a choice of two modes"},
 	{"/scene/buildings/*/damping_modes/*", FIELD_COUNT, BUILDING(damping_modes), NAN, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
-	 .text = "one of them", .fixed = "it is a choice of two modes"},
+	 .text = "number of one mode, from 1", .fixed = "it is a choice of two modes"},
 	{"/scene/buildings/*/rigid_wall", FIELD_BOOL, BUILDING(rigid_wall), 0, 0, 1, FIELD_CLOSED, "",
 	 .text = "true: the last building is a rigid wall that moves with the ground; it has no other members", .fixed = "it determines which other members apply"},
 	{"/scene/buildings/*/law", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
@@ -233,7 +233,7 @@ const struct field fields[] = {
 	{"/scene/excitation/peak_m_s2", FIELD_REAL, AT(scene.excitation.peak), 1, 0, INFINITY, FIELD_OPEN, "m/s2",
 	 .text = "peak ground acceleration", SCALED},
 	{"/scene/excitation/signals", FIELD_COUNT_OR_AUTO, AT(scene.excitation.signals), 5, 1, 100000, FIELD_CLOSED, "",
-	 .text = "number of random ground motions per scene; with 1 the indices include the noise of single responses; \"auto\": the number with which the intervals are narrowest for /design/runs or /design/until, from a pilot", RANDOM,
+	 .text = "number of random ground motions per scene; 1: the indices describe the response to single ground motions and include their noise; \"auto\": chosen by pilot runs for the narrowest intervals that /design/runs or /design/until allow", RANDOM,
 	 .fixed = "every sample has the same number of signals"},
 	{"/scene/excitation/acceleration_m_s2", FIELD_LIST, 0, NAN, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
 	 .text = "ground accelerations of a record, one per time step", .types = " record ", .fixed = "the samples of a record are fixed data"},
@@ -244,29 +244,29 @@ const struct field fields[] = {
 	{"/scene/excitation/records", FIELD_LIST, 0, NAN, 1, STUDY_RECORDS_MAX, FIELD_CLOSED, "",
 	 .text = "recorded ground motions, each a signal; at most 20000000 samples in all", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "one of them: file or acceleration_m_s2", RECORDED, FIXED_DATA},
+	 .text = "one record: file or acceleration_m_s2", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/name", FIELD_TEXT, IN_RECORD(record.name), 0, 1, 200, FIELD_CLOSED, "",
 	 .text = "display name (default: the file)", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/file", FIELD_TEXT, IN_RECORD(file), 0, 1, 200, FIELD_CLOSED, "",
 	 .text = "file of PEER, COSMOS, ESM or columns, its path from the folder of the study; `pound submit` sends it", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/sha256", FIELD_TEXT, IN_RECORD(sha256), 0, 64, 64, FIELD_CLOSED, "",
-	 .text = "SHA-256 of the file, by which a server has it (PUT /v1/records/{sha256}); `pound submit` adds it", RECORDED, FIXED_DATA},
+	 .text = "SHA-256 of the file, which names it on a server (PUT /v1/records/{sha256}); `pound submit` adds it", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/unit", FIELD_TEXT, IN_RECORD(unit), 0, 1, 16, FIELD_CLOSED, "",
-	 .text = "unit of a file that names none: g, cm/s2 or m/s2", RECORDED, FIXED_DATA},
+	 .text = "unit of the accelerations, if the file does not name it: g, cm/s2 or m/s2", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/channel", FIELD_COUNT, IN_RECORD(channel), 0, 0, 1000, FIELD_CLOSED, "",
-	 .text = "which acceleration of a file that has several, from 1; 0: it has one", RECORDED, FIXED_DATA},
+	 .text = "number of the acceleration in a file that has several, from 1; 0: the file has one", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/time_step_s", FIELD_REAL, IN_RECORD(record.time_step), 0, 0, INFINITY, FIELD_OPEN_MIN, "s",
-	 .text = "time between two samples, of acceleration_m_s2 or of a file without times", RECORDED, FIXED_DATA},
+	 .text = "time between two samples; required by acceleration_m_s2 and by a file without times", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/acceleration_m_s2", FIELD_LIST, 0, 0, 2, STUDY_SAMPLES_MAX, FIELD_CLOSED, "",
 	 .text = "ground accelerations, one per time step", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/acceleration_m_s2/*", FIELD_REAL, 0, NAN, -INFINITY, INFINITY, FIELD_OPEN, "m/s2",
-	 .text = "one of them", RECORDED, FIXED_DATA},
+	 .text = "one ground acceleration", RECORDED, FIXED_DATA},
 	{"/scene/excitation/records/*/factor", FIELD_REAL, IN_RECORD(record.factor), 1, 0, INFINITY, FIELD_OPEN, "",
 	 .text = "factor of this record, before it is scaled", RECORDED, .fixed = "it belongs to the record; vary /excitation/factor"},
 	{"/scene/excitation/records/*/reversed", FIELD_BOOL, IN_RECORD(record.reversed), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "true: the ground moves the other way, to the left where it moved to the right", RECORDED, .fixed = "it belongs to the record; use /excitation/directions"},
+	 .text = "true: the accelerations change sign, so the ground moves in the opposite direction", RECORDED, .fixed = "it belongs to the record; use /excitation/directions"},
 	{"/scene/excitation/directions", FIELD_ALTERNATIVE, AT(scene.excitation.both), 0, 0, 1, FIELD_CLOSED, "",
-	 .text = "both: every record is two signals, as it is and reversed", .choice = directions_name, RECORDED,
+	 .text = "both: every record gives two signals, as it is and with its sign changed", .choice = directions_name, RECORDED,
 	 .fixed = "every sample has the same number of signals"},
 	{"/scene/excitation/draw", FIELD_COUNT, AT(scene.excitation.draw), 0, 0, 100000, FIELD_CLOSED, "",
 	 .text = "number of signals that are drawn at random for each scene, with replacement; 0: each record is a signal", RECORDED,
@@ -277,9 +277,9 @@ const struct field fields[] = {
 	 .text = "every record to a peak (pga) or a spectral acceleration (sa), or all by one factor that makes the median spectral acceleration the intensity (median_sa)",
 	 .choice = pound_scale_name, RECORDED, .fixed = "it determines which other members apply"},
 	{"/scene/excitation/scale/intensity_m_s2", FIELD_REAL, AT(scene.excitation.scale.intensity), 0, 0, INFINITY, FIELD_OPEN_MIN, "m/s2",
-	 .text = "peak or spectral acceleration that the records are scaled to; required unless none", RECORDED},
+	 .text = "peak or spectral acceleration that the records are scaled to; required unless `to` is none", RECORDED},
 	{"/scene/excitation/scale/period_s", FIELD_REAL, AT(scene.excitation.scale.period), 0, 0, 1000, FIELD_OPEN_MIN, "s",
-	 .text = "period of the spectral acceleration; sa and median_sa need it", RECORDED, .fixed = "records are scaled once for all cells"},
+	 .text = "period of the spectral acceleration; required by sa and median_sa", RECORDED, .fixed = "records are scaled once for all cells"},
 	{"/scene/excitation/scale/damping_ratio", FIELD_REAL, AT(scene.excitation.scale.damping_ratio), 0.05, 0, 1, FIELD_OPEN_MAX, "",
 	 .text = "damping of the spectral acceleration, as a fraction of critical; only sa and median_sa", RECORDED,
 	 .fixed = "records are scaled once for all cells"},
@@ -299,11 +299,11 @@ const struct field fields[] = {
 	{"/inputs/*/distribution/values", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",
 	 .text = "values of a discrete distribution, or sample of an empirical one, in ascending order", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/values/*", FIELD_REAL, 0, NAN, -POUND_PARAMETER_MAX, POUND_PARAMETER_MAX, FIELD_CLOSED, "",
-	 .text = "one of them", SENSITIVITY, NOT_SCENE},
+	 .text = "one value", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/weights", FIELD_LIST, 0, 0, 1, STUDY_VALUES_MAX, FIELD_CLOSED, "",
 	 .text = "weights of the values of a discrete distribution, one per value (default: equal)", SENSITIVITY, NOT_SCENE},
 	{"/inputs/*/distribution/weights/*", FIELD_REAL, 0, NAN, 0, POUND_PARAMETER_MAX, FIELD_OPEN_MIN, "",
-	 .text = "one of them", SENSITIVITY, NOT_SCENE},
+	 .text = "one weight", SENSITIVITY, NOT_SCENE},
 
 	{"/ratios", FIELD_LIST, 0, 0, 0, POUND_RATIOS_MAX, FIELD_CLOSED, "",
 	 .text = "ratios of inputs to report indices for; ratios plus remaining inputs: at most 5", SENSITIVITY, NOT_SCENE},
@@ -343,7 +343,7 @@ const struct field fields[] = {
 	{"/design/rows", FIELD_COUNT, AT(design.rows), 1000, 2, POUND_ROWS_MAX, FIELD_CLOSED, "",
 	 .text = "base samples n: rows of the matrices A and B; sobol: default 1024, at least 2 per randomisation, best a power of two per randomisation; at most 10000000 pounding runs in all", SENSITIVITY, NOT_SCENE},
 	{"/design/runs", FIELD_COUNT, AT(design.runs), 0, 0, STUDY_RUNS_MAX, FIELD_OPEN_MIN, "",
-	 .text = "pounding runs to spend, the pilot's included, instead of rows; only with signals \"auto\", and required with these unless there is `until`", .kinds = " sensitivity ", WITH_SCENE, NOT_SCENE, LATER},
+	 .text = "pounding runs to spend, pilot included, instead of rows; only with signals \"auto\", which requires it or `until`", .kinds = " sensitivity ", WITH_SCENE, NOT_SCENE, LATER},
 	{"/design/randomisations", FIELD_COUNT, AT(design.randomisations), 8, 4, 32, FIELD_CLOSED, "",
 	 .text = "number of independent scrambles of the Sobol' points, from which intervals are estimated; only with method sobol", SENSITIVITY,
 	 NOT_SCENE},
@@ -354,10 +354,10 @@ const struct field fields[] = {
 	{"/design/until/max_runs", FIELD_COUNT, AT(design.until.max_runs), 200000, 1, STUDY_RUNS_MAX, FIELD_CLOSED, "",
 	 .text = "largest number of pounding runs; at least the runs of the first rows", SENSITIVITY, WITH_SCENE, NOT_SCENE},
 	{"/design/until/goal", FIELD_CHOICE, AT(design.until.goal), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "width: all intervals of S1 and ST; order: only ST intervals that overlap another input's", .choice = goal_name, SENSITIVITY,
+	 .text = "which intervals must be narrow enough: width: all of S1 and ST; order: only those of ST that overlap another input's", .choice = goal_name, SENSITIVITY,
 	 WITH_SCENE, NOT_SCENE, LATER},
 	{"/design/until/output", FIELD_CHOICE, AT(design.until.output), 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "output whose intervals count, one of `outputs`", .choice = until_output_name, SENSITIVITY, WITH_SCENE, NOT_SCENE, LATER},
+	 .text = "output whose intervals must be narrow enough: all, or one of `outputs`", .choice = until_output_name, SENSITIVITY, WITH_SCENE, NOT_SCENE, LATER},
 	{"/design/seed", FIELD_SEED, AT(design.seed), 42, 0, 0, FIELD_CLOSED, "",
 	 .text = "seed of the random numbers; the same seed gives the same result", NOT_SCENE},
 	{"/design/signals", FIELD_ALTERNATIVE, AT(design.common_signals), 1, 0, 1, FIELD_CLOSED, "",
@@ -371,7 +371,7 @@ const struct field fields[] = {
 	 .choice = pound_estimator_name, SENSITIVITY, NOT_SCENE},
 
 	{"/outputs", FIELD_LIST, 0, 0, 1, POUND_OUTPUTS_ASKED_MAX, FIELD_CLOSED, "",
-	 .text = "outputs to compute, all different (default: the amplifications that apply and, with contact, the impulse; of separation none with pounding)", SWEPT, WITH_SCENE, NOT_SCENE},
+	 .text = "outputs to compute, all different (default: the applicable amplifications and, with contact, the impulse; in a separation study no outputs with pounding)", SWEPT, WITH_SCENE, NOT_SCENE},
 	{"/outputs/*", FIELD_CHOICE, AT(outputs), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "name of an output; schema/guide.md has its formula, its unit and what it needs: a body, a law, a contact or buildings", .choice = pound_output_name, SWEPT, WITH_SCENE, NOT_SCENE},
 
@@ -413,7 +413,7 @@ const struct field fields[] = {
 	{"/spectrum/pulses", FIELD_COUNT, AT(spectrum.pulses), 0, 0, 1000000, FIELD_CLOSED, "",
 	 .text = "number of pulses in the idealized pulse train; 0: the number of contacts of each signal", FLOORED, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/place", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
-	 .text = "of a row of buildings the storey below the floor of the spectrum and of the histories (default: the top one of building 0)", SPECTRAL, WITH_SCENE, NOT_SCENE},
+	 .text = "row of buildings: storey below the floor of the spectrum and of the histories (default: top storey of building 0)", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/place/building", FIELD_COUNT, AT(spectrum.place.building), 0, 0, POUND_BUILDINGS_MAX - 1, FIELD_CLOSED, "",
 	 .text = "index of the building", SPECTRAL, WITH_SCENE, NOT_SCENE},
 	{"/spectrum/place/storey", FIELD_COUNT, AT(spectrum.place.storey), NAN, 1, POUND_STOREYS_MAX, FIELD_CLOSED, "",
@@ -424,13 +424,13 @@ const struct field fields[] = {
 	{"/separation", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "settings of the gap needed: gaps, probabilities, intensity, hazard", SEPARATION},
 	{"/separation/gaps_m", FIELD_LIST, 0, 0, 1, POUND_GAPS_MAX, FIELD_CLOSED, "",
-	 .text = "gaps whose probability to pound is computed, ascending (default: up to 41 round ones)", SEPARATION},
+	 .text = "gaps at which the probability of pounding is computed, ascending (default: up to 41 round values)", SEPARATION},
 	{"/separation/gaps_m/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_CLOSED, "m",
-	 .text = "one of them", SEPARATION},
+	 .text = "one gap", SEPARATION},
 	{"/separation/probabilities", FIELD_LIST, 0, 0, 1, POUND_PROBABILITIES_MAX, FIELD_CLOSED, "",
-	 .text = "probabilities to pound whose gaps are computed (default: 0.5, 0.16, 0.1, 0.05, 0.02, 0.01)", SEPARATION},
+	 .text = "probabilities of pounding for which the gap is computed (default: 0.5, 0.16, 0.1, 0.05, 0.02, 0.01)", SEPARATION},
 	{"/separation/probabilities/*", FIELD_REAL, 0, NAN, 0, 1, FIELD_OPEN, "",
-	 .text = "one of them", SEPARATION},
+	 .text = "one probability", SEPARATION},
 	{"/separation/intensity", FIELD_TEXT, AT(separation.intensity), 0, 1, 200, FIELD_CLOSED, "",
 	 .text = "path of the sweep whose values are intensities of the ground motion: fragility curves are fitted over them", SEPARATION},
 	{"/separation/hazard", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
@@ -438,15 +438,15 @@ const struct field fields[] = {
 	{"/separation/hazard/intensities", FIELD_LIST, 0, NAN, 2, POUND_STRIPES_MAX, FIELD_CLOSED, "",
 	 .text = "intensities in the unit of the sweep, ascending", SEPARATION},
 	{"/separation/hazard/intensities/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "",
-	 .text = "one of them", SEPARATION},
+	 .text = "one intensity", SEPARATION},
 	{"/separation/hazard/annual_rates", FIELD_LIST, 0, NAN, 2, POUND_STRIPES_MAX, FIELD_CLOSED, "",
 	 .text = "mean annual rates of exceedance, one per intensity, descending", SEPARATION},
 	{"/separation/hazard/annual_rates/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "1/year",
-	 .text = "one of them", SEPARATION},
+	 .text = "one rate", SEPARATION},
 	{"/separation/return_periods_years", FIELD_LIST, 0, 0, 1, POUND_PERIODS_MAX, FIELD_CLOSED, "",
-	 .text = "return periods of pounding whose gaps are computed; needs hazard", SEPARATION},
+	 .text = "return periods of pounding for which the gap is computed; needs hazard", SEPARATION},
 	{"/separation/return_periods_years/*", FIELD_REAL, 0, NAN, 0, INFINITY, FIELD_OPEN, "years",
-	 .text = "one of them", SEPARATION},
+	 .text = "one return period", SEPARATION},
 
 	{"/convergence", FIELD_OBJECT, 0, 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "solver settings whose results are compared with the event solver; at most 100000 runs in all", CONVERGENCE, NOT_SCENE},

@@ -358,7 +358,7 @@ static void check_place(const struct pound_study *study, const struct pound_stor
 	if (problems_at(problems, at))
 		return;
 	if (place->building >= study->scene.n_buildings || study->scene.buildings[place->building].rigid_wall) {
-		problems_add(problems, pointer, "must be the index of a building that is no rigid wall, got %d",
+		problems_add(problems, pointer, "must be the index of a building that is not a rigid wall, got %d",
 		             place->building);
 		return;
 	}
@@ -440,7 +440,7 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 		                                                                 : 1;
 	if (n > POUND_OUTPUTS_MAX)
 		problems_exceed(problems, "/outputs", n, POUND_OUTPUTS_MAX,
-		                "asks for %d outputs of all places and frequencies, at most %d", n,
+		                "needs %d outputs over all places and frequencies; the limit is %d", n,
 		                POUND_OUTPUTS_MAX);
 }
 

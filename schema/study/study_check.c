@@ -560,8 +560,7 @@ void study_check(const struct pound_study *study, struct problems *problems)
 	study_buildings_check(study, problems);
 	if (study_size_cells(study) > STUDY_CELLS_MAX) {
 		problems_exceed(problems, "/sweep", study_size_cells(study), STUDY_CELLS_MAX,
-		                "asks for %.15g cells, a study may have at most %d", study_size_cells(study),
-		                STUDY_CELLS_MAX);
+		                "needs %.15g cells; the limit is %d", study_size_cells(study), STUDY_CELLS_MAX);
 		return;
 	}
 	if (!problems_at(problems, "/outputs"))

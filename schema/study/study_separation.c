@@ -132,7 +132,7 @@ void study_separation_check(const struct pound_study *study, struct problems *pr
 		             "must have as many elements as intensities: %d, has %d", s->n_intensities, s->n_rates);
 	if (s->n_intensities && !s->intensity)
 		problems_add(problems, "/separation/hazard",
-		             "needs \"intensity\": the path of the sweep whose values its intensities are");
+		             "needs \"intensity\": the path of the sweep over the intensities");
 	if (s->n_periods && !s->n_intensities)
 		problems_add(problems, "/separation/return_periods_years", "needs \"hazard\"");
 }

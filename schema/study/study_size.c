@@ -75,7 +75,7 @@ static void check_step(const struct pound_study *study, const struct pound_solve
 	double n = interval_steps(study, solver);
 	if (n > STUDY_STEPS_MAX)
 		problems_exceed(problems, pointer, n, STUDY_STEPS_MAX,
-		                "asks for %.3g steps in one sample interval, at most %d", n, STUDY_STEPS_MAX);
+		                "needs %.3g steps in one sample interval; the limit is %d", n, STUDY_STEPS_MAX);
 }
 
 static void check_steps(const struct pound_study *study, struct problems *problems)
@@ -135,8 +135,8 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 	    !problems_at(problems, "/design/signals"))
 		check_until(study, problems);
 	if (runs > most)
-		problems_exceed(problems, pointer, runs, most,
-		                "asks for %.15g pounding runs, a study may have at most %d", runs, most);
+		problems_exceed(problems, pointer, runs, most, "needs %.15g pounding runs; the limit is %d", runs,
+		                most);
 	if (!study_check_steps_known(study, problems) || problems_at(problems, "/solver"))
 		return;
 	double at_once =
@@ -144,23 +144,22 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 	bool few = runs <= most; // else reported above
 	if (few && runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_exceed(problems, pointer, runs * study_samples(study), STUDY_WORK_MAX,
-		                "asks for %.3g samples of ground motion in all runs, at most %.0e",
+		                "needs %.3g samples of ground motion in all runs; the limit is %.0e",
 		                runs * study_samples(study), STUDY_WORK_MAX);
 	else if (few && runs * study_steps(study) > STUDY_WORK_MAX)
 		problems_exceed(problems, pointer, runs * study_steps(study), STUDY_WORK_MAX,
-		                "asks for %.3g steps of the solver in all runs, at most %.0e",
+		                "needs %.3g steps of the solver in all runs; the limit is %.0e",
 		                runs * study_steps(study), STUDY_WORK_MAX);
 	const double floors = study->scene.n_buildings ? pound_row_floors(&study->scene) : 0;
 	if (few && floors * runs * study_samples(study) > STUDY_WORK_MAX)
 		problems_exceed(problems, pointer, floors * runs * study_samples(study), STUDY_WORK_MAX,
-		                "asks for %.3g samples of floors in all runs, at most %.0e",
+		                "needs %.3g samples of floors in all runs; the limit is %.0e",
 		                floors * runs * study_samples(study), STUDY_WORK_MAX);
 	if (at_once > STUDY_AT_ONCE_MAX)
-		problems_exceed(
-		    problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
-		    "asks for %.3g samples of ground motion at once (cells x samples of a row x samples of "
-		    "a motion), at most %d",
-		    at_once, STUDY_AT_ONCE_MAX);
+		problems_exceed(problems, "/sweep", at_once, STUDY_AT_ONCE_MAX,
+		                "needs %.3g samples of ground motion at once (cells x samples of a row x samples of "
+		                "a motion); the limit is %d",
+		                at_once, STUDY_AT_ONCE_MAX);
 	check_steps(study, problems);
 }
 

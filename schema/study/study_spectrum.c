@@ -112,12 +112,12 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 	if (whole && spectrum->histories && signals && study_check_steps_known(study, problems) &&
 	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
 		problems_exceed(problems, "/histories", study_samples(study) * study->scene.excitation.signals,
-		                STUDY_HISTORIES_MAX, "asks for %.15g samples of all signals, at most %d",
+		                STUDY_HISTORIES_MAX, "needs %.15g samples over all signals; the limit is %d",
 		                study_samples(study) * study->scene.excitation.signals, STUDY_HISTORIES_MAX);
 	double ordinates = (double)spectrum->n * study->scene.excitation.signals;
 	if (whole && signals && ordinates > STUDY_ORDINATES_MAX)
 		problems_exceed(problems, "/spectrum/frequencies_hz", ordinates, STUDY_ORDINATES_MAX,
-		                "asks for %.15g frequencies of all signals, at most %d", ordinates,
+		                "needs %.15g frequencies over all signals; the limit is %d", ordinates,
 		                STUDY_ORDINATES_MAX);
 }
 

@@ -259,7 +259,8 @@ static void look_at_gap(struct warnings *all, const struct pound_study *study,
 		for (int s = 0; s < result->cells[cell].n_signals && !study->scene.n_buildings; s++)
 			needed = fmax(needed, result->cells[cell].signals[s].gap_needed);
 	if (needed > 0)
-		warn(all, "/scene/contact/gap_m", "no run has a contact: the largest closing is %.4g m", needed);
+		warn(all, "/scene/contact/gap_m", "no run has a contact: the largest closing displacement is %.4g m",
+		     needed);
 	else
 		warn(all, study->scene.n_buildings ? "/scene/contacts" : "/scene/contact/gap_m",
 		     "no run has a contact");

@@ -216,7 +216,7 @@ static void a_journal_is_of_one_evaluation(void **state)
 	    (const char *const[]){"pound", "evaluate", "--model", model.url, "--journal", journal, study, NULL},
 	    NULL);
 	program_expect(&outcome, 2);
-	assert_non_null(strstr(outcome.err, "line 502: is no run with 1 outputs"));
+	assert_non_null(strstr(outcome.err, "line 502: is not a run with 1 outputs"));
 	program_free(&outcome);
 	assert_int_equal(*model.calls, RUNS);
 	unlink(journal);
@@ -241,8 +241,8 @@ static void what_is_wrong_ends_the_command_with_its_status(void **state)
 	    {STUB_PLAIN, {"--jobs", "0"}, "--jobs must be a whole number", 2},
 	    {STUB_PLAIN, {"--journal", "/nowhere/journal"}, "cannot open '/nowhere/journal'", 1},
 	    {STUB_WIDE, {NULL}, "does not have the sizes of the model", 2},
-	    {STUB_REFUSING, {NULL}, "answers with status 401: who are you?", 1},
-	    {STUB_DEAD, {"--jobs", "1"}, "answers with status 503: busy", 4},
+	    {STUB_REFUSING, {NULL}, "the answer has status 401: who are you?", 1},
+	    {STUB_DEAD, {"--jobs", "1"}, "the answer has status 503: busy", 4},
 	    {STUB_SILENT, {"--timeout", "1", "--jobs", "1"}, "Operation timed out", 4},
 	};
 	char study[PATH_SIZE], few[PATH_SIZE];

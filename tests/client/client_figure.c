@@ -135,7 +135,7 @@ static void a_figure_of_a_running_study_is_of_the_rows_so_far(void **state)
 		answer = service_get(*state, "/v1/studies/%s/figures/indices?partial=true", id);
 	}
 	assert_int_equal(answer.status, 200);
-	assert_non_null(strstr(answer.body, "INTERMEDIATE RESULT of "));
+	assert_non_null(strstr(answer.body, "INTERMEDIATE RESULT, "));
 	answer_free(&answer);
 	answer = service_get(*state, "/v1/studies/%s/figures?partial=true", id);
 	assert_int_equal(answer.status, 200);

@@ -232,8 +232,8 @@ static void who_has_not_the_token_gets_no_block_and_keeps_nobody_out(void **stat
 	assert_true(seen(ERR, "connected, 1 thread, from 127.0.0.1", run));
 	assert_true(serving(worker) > 0);
 	const pid_t other = worker_start(OTHER_TOKEN);
-	assert_true(seen(ERR, "the token from 127.0.0.1 is not the one of --worker-token-file", run));
-	seen(WORKER_ERR, "pound-worker: refused: the token from 127.0.0.1 is not the one of", 0);
+	assert_true(seen(ERR, "the token from 127.0.0.1 differs from the one in --worker-token-file", run));
+	seen(WORKER_ERR, "pound-worker: refused: the token from 127.0.0.1 differs from", 0);
 	assert_true(check_same(run) > 0);
 	worker_end(other, SIGTERM);
 	worker_end(worker, SIGTERM);

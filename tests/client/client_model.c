@@ -118,7 +118,7 @@ static void given_samples_have_indices_without_a_study(void **state)
 	    program_run((const char *const[]){"pound", "indices", "--given", inputs, "-", NULL}, "y\n1\n");
 	program_expect(&refused, 2);
 	assert_string_equal(refused.out, "");
-	assert_non_null(strstr(refused.err, "standard input: 1 fault: has 1 samples, but the inputs have"));
+	assert_non_null(strstr(refused.err, "standard input: 1 error: has 1 samples, but the inputs have"));
 	program_free(&refused);
 	program_free(&csv);
 	program_free(&table);
@@ -159,7 +159,7 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 	// a study that is wrong is not laid at the door of its outputs
 	struct program_outcome swept = POUND("indices", "schema/examples/paper.json", outputs);
 	program_expect(&swept, 2);
-	assert_non_null(strstr(swept.err, "paper.json: 1 fault\npound:   /sweep: "));
+	assert_non_null(strstr(swept.err, "paper.json: 1 error\npound:   /sweep: "));
 	program_free(&swept);
 	struct program_outcome lost = POUND("indices", study, "/no/such/file");
 	program_expect(&lost, 1);

@@ -82,9 +82,9 @@ static void good_files_are_shown_beside_all_bad_ones(void **state)
 		assert_null(strstr(shown.out, "uneven"));
 		assert_null(strstr(shown.out, "cut_off"));
 		assert_non_null(strstr(shown.err, "line 9, column 1"));
-		assert_non_null(strstr(shown.err, "cut_off.AT2: 1 fault"));
+		assert_non_null(strstr(shown.err, "cut_off.AT2: 1 error"));
 		assert_non_null(strstr(shown.err, "line 12: the header"));
-		assert_non_null(strstr(shown.err, "velocity.VT2: 1 fault"));
+		assert_non_null(strstr(shown.err, "velocity.VT2: 1 error"));
 		assert_non_null(strstr(shown.err, "3 of 5 files are not shown"));
 		program_free(&shown);
 	}

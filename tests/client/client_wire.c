@@ -58,7 +58,7 @@ static const struct script SCRIPTS[] = {
                      "\"rows_dropped\": 1}]}")},
      {"results", "--format=table", "1"},
      0,
-     "sensitivity study: 90 runs, 2 failed and 1 rows left out with them",
+     "sensitivity study: 90 runs, 2 failed, so 1 row is left out",
      NULL},
     {{JSON("200 OK", "{\"status\": \"running\", \"id\": \"7\", \"runs_done\": 3}")},
      {"status", "--format=csv", "7"},

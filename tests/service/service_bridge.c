@@ -164,7 +164,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	snprintf(body, sizeof body, "{%s, \"config\": {\"study\": %s}}", right,
 	         example_text("spectrum_sensitivity"));
 	refused(service, "/Evaluate", body, "InvalidInput",
-	        "/config/study/outputs: a model has no output \"floor_spectrum\"");
+	        "/config/study/outputs: output \"floor_spectrum\" is not available from a model");
 	snprintf(study, sizeof study, still, "0, 0, 0", "");
 	snprintf(body, sizeof body, "{\"name\": \"pound\", \"input\": [[1]], \"config\": {\"study\": %s}}",
 	         study);
@@ -180,7 +180,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	snprintf(body, sizeof body, "{\"name\": \"pound\", \"input\": [[1]], \"config\": {\"study\": %s}}",
 	         study);
 	refused(service, "/Evaluate", body, "InvalidOutput",
-	        "1 of the runs: the steps of the solver are too long");
+	        "1 run failed: the steps of the solver are too long");
 	// more than a client should wait for
 	snprintf(body, sizeof body,
 	         "{\"name\": \"pound\", \"input\": [[0.001, 2, 1, 0.5]], \"config\": {\"signals\": "

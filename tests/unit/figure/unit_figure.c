@@ -495,8 +495,8 @@ static void what_is_no_figure_is_refused_with_a_reason(void **state)
 	    {"nothing", {0}, FIGURE_UNKNOWN, "no figure is called \"nothing\""},
 	    {"indices", {0}, FIGURE_ABSENT, "kind \"sensitivity\", not \"response\"; it has: responses"},
 	    {"history", {0}, FIGURE_ABSENT, "no figure \"history\""},
-	    {"heights", {0}, FIGURE_ABSENT, "it is of a row of buildings; it has: responses"},
-	    {"impacts", {0}, FIGURE_ABSENT, "of a row of buildings with contacts; it has: responses"},
+	    {"heights", {0}, FIGURE_ABSENT, "it shows a row of buildings; it has: responses"},
+	    {"impacts", {0}, FIGURE_ABSENT, "a row of buildings with contacts; it has: responses"},
 	    {"suite", {0}, FIGURE_ABSENT, "a table of its own (pound motion --periods)"},
 	    {"responses", {.width = "319"}, FIGURE_CHOICE, "width must be a whole number in [320, 2400]"},
 	    {"responses", {.width = "-400"}, FIGURE_CHOICE, "width must be"},
@@ -579,7 +579,7 @@ static void a_figure_that_a_result_has_not_says_what_it_needs(void **state)
 		const char *example, *figure, *detail;
 	} cases[] = {
 	    {"unequal_heights", "responses",
-	     "it is of two oscillators, not of a row of buildings; it has: heights, impacts"},
+	     "it shows two oscillators, not a row of buildings; it has: heights, impacts"},
 	    {"sensitivity_small", "swept", "it needs a \"sweep\" over a number; it has: indices"},
 	    {"sensitivity_small", "given", "it needs 30 rows"},
 	    {"sensitivity_small", "widths", "it needs 60 rows"},

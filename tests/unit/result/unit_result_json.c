@@ -481,13 +481,16 @@ static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(
 		const char *json, *size, *narrower;
 	} cases[] = {
 	    {WIDENING("0.21"),
-	     "The widest 95 % interval is +-0.21, that of ST of f_2 in impulse; 4000 rows would halve it.",
-	     "With 250 rows it was +-0.09, narrower but not better: a few rare rows make much of the variance, "
+	     "The widest 95 % interval is +-0.21, of ST of input f_2, output impulse; 4000 rows would halve its "
+	     "width.",
+	     "With 250 rows it was +-0.09, narrower but not better: a few rare rows hold much of the variance, "
 	     "and so few rows may not contain them. Quote the interval of 1000 rows."},
 	    // less than a tenth wider may be chance
 	    {WIDENING("0.095"),
-	     "The widest 95 % interval is +-0.095, that of ST of f_2 in impulse; 4000 rows would halve it.", ""},
-	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, that of ST of f_2 in force.", ""},
+	     "The widest 95 % interval is +-0.095, of ST of input f_2, output impulse; 4000 rows would halve its "
+	     "width.",
+	     ""},
+	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, of ST of input f_2, output force.", ""},
 	    {"{\"kind\": \"response\"}", "", ""},
 	};
 	(void)state;

@@ -80,8 +80,7 @@ static void too_many_cells_are_refused_before_they_are_counted_out(void **state)
 		at += sprintf(at, "%s{\"path\": \"%s\", \"values\": [%s]}", s ? "," : "", paths[s], list);
 	strcpy(at, "]");
 	char *document = study_documents_with(study_documents_response, "{\"frequency_hz\": 3.1}]}", swept);
-	study_documents_problem(document, "/sweep",
-	                        "asks for 1.00802805607006e+24 cells, a study may have at most 10000");
+	study_documents_problem(document, "/sweep", "needs 1.00802805607006e+24 cells; the limit is 10000");
 	free(document);
 	free(swept);
 }
