@@ -159,7 +159,8 @@ def table(result, name=None):
 
     Default: one for each cell, output and input of a result with indices, with every column of them.  Of a separation study
     without inputs: one for each cell, contact of a row and gap, with the probability of pounding.  name: another list that
-    outputs have, such as "second_order", or of a separation study "pounding", "gaps", "rules", "fragility" or "return_periods".
+    outputs have, such as "second_order", or of a separation study "pounding", "gaps", "rules", "fragility" or "return_periods",
+    of a response of a row of buildings "modes".
     """
     rows = []
     if name in ("fragility", "return_periods"):
@@ -168,7 +169,7 @@ def table(result, name=None):
             found = curves.get("curves" if name == "fragility" else name, [])
             rows += [{**curves["sweep"], **contact, **row} for row in found]
     else:
-        for number, cell in enumerate(result.get("cells", [{}])):
+        for number, cell in enumerate(result.get("cells", [result])):
             where = {"cell": number, **cell.get("sweep", {})}
             outputs = cell.get("outputs") if name not in ("pounding", "gaps", "rules") else None
             if isinstance(outputs, list):

@@ -16,6 +16,7 @@
 
 enum {
 	PEAKS = 12,       /* shown peaks of a spectrum; the JSON has all */
+	MODES = 3,        /* shown modes of a building; the table "modes" has all */
 	CSV_COLUMNS = 32, /* shown columns of a named table; the CSV has all */
 	CSV_CELL = 256,
 };
@@ -60,6 +61,24 @@ static void print_pairs(const struct reading *result, const char *at)
 	table_print(table, 2);
 	table_close(table);
 	print_outputs(result, at);
+}
+
+/* The first modes of each building. */
+static void print_modes(const struct reading *result, const char *at)
+{
+	static const char *const columns[] = {"building", "mode", "T_s", "f_hz", "mass ratio", "damping", NULL};
+	static const char *const members[] = {
+	    "building", "mode", "period_s", "frequency_hz", "effective_mass_ratio", "damping_ratio"};
+	struct table *table = table_open(2, columns);
+	for (int k = 0; k < reading_count(result, "%s/modes", at); k++)
+		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
+			if (reading_number(result, "%s/modes/%d/mode", at, k) <= MODES)
+				table_number(table, reading_number(result, "%s/modes/%d/%s", at, k, members[m]));
+	putchar('\n');
+	table_prose(0, "first modes with the initial stiffness: period, frequency, effective modal mass over the "
+	               "building's mass, damping ratio");
+	table_print(table, 2);
+	table_close(table);
 }
 
 /* The storeys of a row and the floors above them, as means over the signals; the JSON has each signal. */
@@ -140,6 +159,7 @@ static void print_responses(const struct reading *result, const char *at)
 		return;
 	}
 	cell_failed(result, at);
+	print_modes(result, at);
 	print_storeys(result, at);
 	print_contacts(result, at);
 	print_outputs(result, at);

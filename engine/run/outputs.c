@@ -105,6 +105,26 @@ static double drift_free(const struct pound_row_response *row, const struct poun
 	return storey_of(row, scene, at)->drift_max_free;
 }
 
+static double drift_ratio(const struct pound_row_response *row, const struct pound_scene *scene, int at)
+{
+	return storey_of(row, scene, at)->drift_ratio_max;
+}
+
+static double drift_ratio_largest(const struct pound_row_response *row, const struct pound_scene *scene,
+                                  int at)
+{
+	(void)at;
+	double most = 0;
+	for (int k = 0; k < scene->n_places; k++)
+		most = fmax(most, drift_ratio(row, scene, k));
+	return most;
+}
+
+static double shear(const struct pound_row_response *row, const struct pound_scene *scene, int at)
+{
+	return storey_of(row, scene, at)->shear_max;
+}
+
 static double acceleration(const struct pound_row_response *row, const struct pound_scene *scene, int at)
 {
 	return storey_of(row, scene, at)->acceleration_max;
@@ -470,6 +490,12 @@ static const struct output {
      NULL, drift, row_one, .places = true},
     {"peak_drift_free_m", "largest drift of the story at each place, without pounding [m]", "buildings",
      "buildings", is_row, NULL, NULL, drift_free, row_one, .places = true},
+    {"peak_drift_ratio", "largest drift of the story at each place over its height", "buildings", "buildings",
+     is_row, NULL, NULL, drift_ratio, row_one, .places = true},
+    {"largest_drift_ratio", "largest drift ratio of the stories at all places", "buildings", "buildings",
+     is_row, NULL, NULL, drift_ratio_largest, row_one, .asks = 0},
+    {"peak_shear_n", "largest spring force of the story at each place; of a first story, the base shear [N]",
+     "buildings", "buildings", is_row, NULL, NULL, shear, row_one, .places = true},
     {"residual_drift_m", "magnitude of the residual drift of the story at each place [m]", "buildings",
      "buildings", is_row, NULL, NULL, residual_drift, row_one, .places = true},
     {"peak_acceleration_m_s2",

@@ -213,9 +213,11 @@ struct first_modes {
 static void first_modes_of(const struct pound_scene *scene, struct first_modes *modes)
 {
 	for (int b = 0; b < scene->n_buildings; b++) {
-		modes->frequency[b] = modes->damping[b] = 0;
+		struct pound_building_mode of_building[POUND_STOREYS_MAX] = {0};
 		if (pound_row_storeys(scene, b))
-			pound_building_first_mode(&scene->buildings[b], &modes->frequency[b], &modes->damping[b]);
+			pound_building_modes(&scene->buildings[b], of_building);
+		modes->frequency[b] = of_building->frequency;
+		modes->damping[b] = of_building->damping_ratio;
 	}
 	for (int i = 0; i < POUND_OSCILLATORS && !scene->n_buildings; i++) {
 		const struct pound_oscillator *o = &scene->oscillators[i];

@@ -115,35 +115,42 @@ void pound_building_storeys(const struct pound_building *building, struct pound_
 	forms[building->damping].dashpots(building, w, storeys);
 }
 
-/* The first mode of a building with its initial stiffness.
+/* Modes of a building with its initial stiffness.
  *
- * Given    building    not a rigid wall
- * Returns  frequency   w    rad/s
- *          damping     xi   -       damping ratio, from the diagonal term of modal damping
+ * Given    building       not a rigid wall
+ * Returns  modes          frequencies, effective masses, damping ratios   (building->storeys)
  *
- *   xi = phi^T C phi / (2 w phi^T M phi)
+ *   mass_ratio = (sum m phi)^2 / (sum m phi^2 sum m)      damping_ratio = phi^T C phi / (2 w phi^T M phi)
  *
- * It equals the damping ratio of the document if the damping form prescribes the first mode; with other forms C couples the
- * modes, and xi is from the diagonal term alone.
+ * The damping ratio equals the document's in the modes in which the damping form prescribes it; with the form "storey" C couples
+ * the modes, and it is from the diagonal term alone.
  *
- * Source   Chopra, Dynamics of Structures, 14.3 and 11.4
- * Test     unit_building: the_first_mode_has_the_damping_of_its_form
+ * Source   Chopra, Dynamics of Structures, 13.2.5 (effective modal mass), 14.3 and 11.4
+ * Test     unit_building: modes_have_their_closed_forms
  */
-void pound_building_first_mode(const struct pound_building *building, double *frequency, double *damping)
+void pound_building_modes(const struct pound_building *building,
+                          struct pound_building_mode modes[static POUND_STOREYS_MAX])
 {
 	struct pound_storeys storeys;
-	struct pound_modes modes;
+	struct pound_modes shapes; // with sum m phi^2 = 1
+	double total = 0;
 	pound_building_storeys(building, &storeys);
-	*frequency = storeys.frequency;
-	*damping = pound_each_of(&building->damping_ratio, 0);
-	if (storeys.modal)
-		return;
-	pound_modes_fill(storeys.n, storeys.mass, storeys.stiffness, &modes);
-	double sum = storeys.mass_damping, below = 0;
-	for (int i = 0; i < storeys.n; i++) {
-		const double drift = modes.shape[0][i] - below;
-		sum += storeys.dashpot[i] * drift * drift;
-		below = modes.shape[0][i];
+	pound_modes_fill(storeys.n, storeys.mass, storeys.stiffness, &shapes);
+	for (int i = 0; i < storeys.n; i++)
+		total += storeys.mass[i];
+	for (int r = 0; r < storeys.n; r++) {
+		double moved = 0, damping = storeys.mass_damping, below = 0;
+		for (int i = 0; i < storeys.n; i++) {
+			const double drift = shapes.shape[r][i] - below;
+			moved += storeys.mass[i] * shapes.shape[r][i];
+			damping += storeys.dashpot[i] * drift * drift;
+			below = shapes.shape[r][i];
+		}
+		// a given first frequency is kept without the rounding of the scaled stiffness
+		const double w = r == 0 ? storeys.frequency : shapes.w[r];
+		modes[r] = (struct pound_building_mode){
+		    .frequency = w,
+		    .mass_ratio = moved * moved / total,
+		    .damping_ratio = storeys.modal ? pound_each_of(&building->damping_ratio, 0) : damping / (2 * w)};
 	}
-	*damping = sum / (2 * storeys.frequency);
 }

@@ -15,7 +15,16 @@ struct pound_storeys {
 	bool modal;                          /* damping is given per mode, not by dashpots */
 };
 
+/* A mode of vibration of a building with its initial stiffness. */
+struct pound_building_mode {
+	double frequency;     /* undamped [rad/s] */
+	double mass_ratio;    /* effective modal mass over the mass of the building; all modes add up to 1 */
+	double damping_ratio; /* from the diagonal term of modal damping */
+};
+
 void pound_building_storeys(const struct pound_building *building, struct pound_storeys *storeys);
-void pound_building_first_mode(const struct pound_building *building, double *frequency, double *damping);
+/* from the lowest frequency to the highest  (building->storeys) */
+void pound_building_modes(const struct pound_building *building,
+                          struct pound_building_mode modes[static POUND_STOREYS_MAX]);
 
 #endif

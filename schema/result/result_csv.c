@@ -256,7 +256,7 @@ static void put_signal(struct lines *lines, const struct place *at)
 	put_scalars(lines, member(signal, "end"), "end.");
 }
 
-/* An element of a list of gaps of a cell or a contact. */
+/* An element of a list of a cell or of a contact: of gaps, or of modes. */
 static void put_contact(struct lines *lines, const struct place *at)
 {
 	put_cell(lines, at);
@@ -336,6 +336,7 @@ static const struct table {
     {"signals", CELL, put_signal, "signals", NULL, NULL, false},
     {"fragility", SET, put_curve, "curves", NULL, NULL, false},
     {"return_periods", SET, put_curve, "return_periods", NULL, NULL, false},
+    {"modes", CELL, put_contact, "modes", NULL, NULL, false},
     {"outputs", CELL, put_mean, "outputs", NULL, NULL, false},
     {"records", RESULT, put_record, "suite", "records", NULL, false},
 };

@@ -97,6 +97,8 @@ static void write_outputs(struct writer *w, const struct pound_study *study, con
 static void write_response(struct writer *w, const struct pound_study *study, const struct pound_cell *cell,
                            const struct pound_scene *scene)
 {
+	if (cell->rows)
+		result_row_modes(w, scene);
 	writer_array(w, "signals", WRITER_LINES);
 	for (int i = 0; i < cell->n_signals; i++) {
 		writer_object(w, NULL, WRITER_LINES);

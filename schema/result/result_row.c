@@ -4,6 +4,10 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "engine/scene/building.h"
+
+static const double PI = 3.14159265358979323846;
+
 struct measure {
 	const char *name;
 	size_t offset; /* in the response of a storey or of a contact */
@@ -66,6 +70,32 @@ static void write_contact(struct writer *w, const struct pound_scene *scene, int
 		writer_number(w, NULL, contact.levels[side]);
 	writer_end(w);
 	write_measures(w, contact_measures, N_CONTACT, response);
+	writer_end(w);
+}
+
+/* Writes the modes of the buildings with their initial stiffness, one list for all, so that it is a table as it is.
+ *
+ * Test     unit_row_results: modes_are_of_the_buildings_of_the_cell
+ */
+void result_row_modes(struct writer *w, const struct pound_scene *scene)
+{
+	writer_array(w, "modes", WRITER_LINES);
+	for (int b = 0; b < scene->n_buildings; b++) {
+		struct pound_building_mode modes[POUND_STOREYS_MAX];
+		const int n = pound_row_storeys(scene, b); // 0: a wall
+		if (n)
+			pound_building_modes(&scene->buildings[b], modes);
+		for (int r = 0; r < n; r++) {
+			writer_object(w, NULL, WRITER_LINE);
+			writer_whole(w, "building", b);
+			writer_whole(w, "mode", r + 1);
+			writer_number(w, "frequency_hz", modes[r].frequency / (2 * PI));
+			writer_number(w, "period_s", 2 * PI / modes[r].frequency);
+			writer_number(w, "effective_mass_ratio", modes[r].mass_ratio);
+			writer_number(w, "damping_ratio", modes[r].damping_ratio);
+			writer_end(w);
+		}
+	}
 	writer_end(w);
 }
 

@@ -5,6 +5,9 @@
 #include "engine/pound.h"
 #include "schema/json/json_writer.h"
 
+/* Writes the modes of all buildings; `scene` has the buildings of the cell. */
+void result_row_modes(struct writer *w, const struct pound_scene *scene);
+
 /* Writes the response to one signal; `scene` has the buildings of the cell. */
 void result_row_signal(struct writer *w, const struct pound_scene *scene,
                        const struct pound_row_response *row);

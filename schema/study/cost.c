@@ -77,9 +77,9 @@ static const double seconds_of[OPERATIONS][KINDS] = {
  * a run. */
 static const double HIGH = 3, HIGH_CHAIN = 5, HIGH_CHAIN_AT_REST = 13;
 
-/* [bytes] in a result: the object of an index, of a signal, a number, a measure of a row, and all else */
+/* [bytes] in a result: the object of an index, of a signal, a number, a measure of a row, a mode of a building, and all else */
 static const double INDEX_BYTES = 2000, SIGNAL_BYTES = 900, NUMBER_BYTES = 20, MEASURE_BYTES = 45,
-                    DOCUMENT_BYTES = 3000;
+                    MODE_BYTES = 170, DOCUMENT_BYTES = 3000;
 
 /* [bytes] of memory for a study, per number of its document, and per byte of its result: the text grows by doubling before it is
  * stored in the database */
@@ -147,6 +147,8 @@ struct cost cost_of(const struct pound_study *asked, int n_workers)
 		numbers = asked->kind == POUND_KIND_SEPARATION ? 2 * study->n_outputs
 		          : of_row > 0                         ? of_row
 		                       : sizeof(struct pound_response) / sizeof(double) + 6 * study->spectrum.n;
+		if (asked->kind == POUND_KIND_RESPONSE)
+			cost.bytes += cells * pound_row_floors(&study->scene) * MODE_BYTES;
 		cost.bytes +=
 		    runs * (asked->kind == POUND_KIND_SEPARATION ? 0 : SIGNAL_BYTES + of_row * MEASURE_BYTES) +
 		    cells * 20 * study->spectrum.n * NUMBER_BYTES;

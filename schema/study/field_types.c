@@ -278,7 +278,7 @@ static void choice_expected(const struct field *field, char *text, size_t size)
 /* The row of a choice, -1: invalid, and a problem with all names and the nearest one is added. */
 static bool choice_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
 {
-	char expected[1792]; // shorter than a problem's detail
+	char expected[FIELDS_EXPECTED_SIZE];
 	int row = cJSON_IsString(node) ? fields_choice(field->choice, node->valuestring) : -1;
 	*value = row;
 	if (row >= 0)

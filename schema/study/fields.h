@@ -67,7 +67,9 @@ bool fields_listed(const char *names, const char *name);
 /* Whether a study of this kind, excitation and solver uses a field; a NULL name matches any. */
 bool fields_used(const struct field *field, const char *kind, const char *excitation, const char *solver);
 
-/* The valid values of a field in words: "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"". */
+/* The valid values of a field in words: "a number in [0, 1]", "a whole number of at least 2", "one of "lhs", "random"".
+ * The size holds the longest of these texts; the detail of a problem is longer. */
+enum { FIELDS_EXPECTED_SIZE = 1792 };
 void fields_expected(const struct field *field, char *text, size_t size);
 void fields_range(const struct field *field, char *text, size_t size); /* "in [0, 1]", "at least 2" */
 void fields_span(const struct field *field, char *text, size_t size); /* range of a length: "2", "1 to 200" */

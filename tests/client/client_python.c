@@ -132,6 +132,9 @@ static void a_table_has_the_rows_of_its_kind(void **state)
 	    "2}}]\n"
 	    "rows = pound.table(pound.run({**study, 'inputs': inputs, 'design': {'rows': 20}}))\n"
 	    "assert len(rows) == 6 and 'S1' in rows[0] and rows[0]['output'] == 'gap_needed_m'\n"
+	    "modes = pound.table(pound.run({'kind': 'response', 'scene': row}), 'modes')\n"
+	    "assert [(m['building'], m['mode']) for m in modes] == [(0, 1), (0, 2), (1, 1), (1, 2)]\n"
+	    "assert modes[2]['period_s'] == 0.5\n"
 	    "try: pound.table(pound.run({'kind': 'response', 'scene': pair}))\n"
 	    "except pound.Error as error: assert 'kind \"response\" has no table' in str(error), str(error)\n"
 	    "else: assert False\n");

@@ -203,6 +203,7 @@ static const struct {
     {"contact_force", "dirac_peaks", NULL, NULL},
     {"response_sweep", " = ", NULL, NULL},
     {"unequal_heights", "a_free", NULL, NULL},
+    {"unequal_heights", "       0     1     0.5      2      0.8528     0.05\n", NULL, NULL},
     {"separation", "P(pounding)", NULL, NULL},
     {"paper", NULL, "\"rows\": 1000", "\"rows\": 40"},
     {"paper_linear", NULL, "\"rows\": 1000", "\"rows\": 60"},

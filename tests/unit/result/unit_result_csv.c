@@ -191,6 +191,17 @@ static void every_list_of_a_study_of_separation_is_a_table(void **state)
 	tabulates(pair, "records", "name,index,factor\r\n,0,2\r\nb,1,3\r\n");
 }
 
+static void modes_of_buildings_are_a_table(void **state)
+{
+	(void)state;
+	static const char result[] = "{\"kind\": \"response\", \"cells\": [{\"sweep\": {\"/x\": 1}, \"modes\": "
+	                             "[{\"building\": 0, \"mode\": 1, "
+	                             "\"period_s\": 0.5}, {\"building\": 1, \"mode\": 1, \"period_s\": 0.25}], "
+	                             "\"signals\": [{\"index\": 0}]}]}";
+	tabulates(result, "modes", "/x,building,mode,period_s\r\n1,0,1,0.5\r\n1,1,1,0.25\r\n");
+	becomes(result, "/x,index\r\n1,0\r\n");
+}
+
 static void each_contact_of_a_row_has_lines_of_its_own(void **state)
 {
 	(void)state;
@@ -248,6 +259,7 @@ CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(every_row_of_a_partial_result_says_of_how_many_rows_it_is),
            cmocka_unit_test(a_table_that_a_result_has_not_is_empty),
            cmocka_unit_test(every_list_of_a_study_of_separation_is_a_table),
+           cmocka_unit_test(modes_of_buildings_are_a_table),
            cmocka_unit_test(each_contact_of_a_row_has_lines_of_its_own),
            cmocka_unit_test(a_line_that_lacks_a_column_leaves_it_empty),
            cmocka_unit_test(a_cell_is_read_back_as_it_was_written),

@@ -114,6 +114,8 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 	    {"peak_displacement_free_m", "buildings/1/floors/0/displacement_max_free_m"},
 	    {"peak_drift_m", "buildings/1/storeys/0/drift_max_m"},
 	    {"peak_drift_free_m", "buildings/1/storeys/0/drift_max_free_m"},
+	    {"peak_drift_ratio", "buildings/1/storeys/0/drift_ratio_max"},
+	    {"peak_shear_n", "buildings/1/storeys/0/shear_max_n"},
 	    {"residual_drift_m", NULL},
 	    {"peak_acceleration_m_s2", "buildings/1/floors/0/acceleration_max_m_s2"},
 	    {"peak_acceleration_free_m_s2", "buildings/1/floors/0/acceleration_max_free_m_s2"},
@@ -158,6 +160,36 @@ static void outputs_of_rows_are_means_of_the_signals(void **state)
 		assert_true(want > 0);
 		check_near(reading_number(r, "/outputs/%s.building_1.storey_1", of_rows[k].output), want, 0);
 	}
+	reading_close(r);
+}
+
+/* The largest drift ratio of each signal is that of another story: its mean is above those of all places. */
+static void the_largest_drift_ratio_is_that_of_all_places(void **state)
+{
+	static const char document[] =
+	    "{\"kind\": \"response\", \"scene\": {\"law\": {\"type\": \"elastoplastic\"}, \"buildings\": "
+	    "[{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 1, \"height_m\": [4, 3, 2]}, {\"storeys\": 2, "
+	    "\"mass_kg\": 1e5, \"frequency_hz\": 1.7}], \"contact\": {\"gap_m\": 0.02}, \"excitation\": "
+	    "{\"signals\": "
+	    "8}}, \"outputs\": [\"peak_drift_ratio\", \"largest_drift_ratio\"]}";
+	double sum = 0, mean_most = 0;
+	(void)state;
+	struct reading *r = results_of_study(document);
+	for (int i = 0; i < 8; i++) {
+		double most = 0;
+		for (int s = 0; s < 3; s++) {
+			const double ratio =
+			    reading_number(r, "/signals/%d/buildings/0/storeys/%d/drift_max_m", i, s) / (4 - s);
+			check_near(reading_number(r, "/signals/%d/buildings/0/storeys/%d/drift_ratio_max", i, s), ratio,
+			           0);
+			most = fmax(most, ratio);
+		}
+		sum += most;
+	}
+	for (int s = 1; s <= 3; s++)
+		mean_most = fmax(mean_most, reading_number(r, "/outputs/peak_drift_ratio.building_0.storey_%d", s));
+	check_near(reading_number(r, "/outputs/largest_drift_ratio"), sum / 8, 0);
+	assert_true(sum / 8 > mean_most);
 	reading_close(r);
 }
 
@@ -328,4 +360,5 @@ CHECK_MAIN(cmocka_unit_test(the_gap_needed_decides_which_signals_pound),
            cmocka_unit_test(bodies_that_meet_have_closed_their_gap),
            cmocka_unit_test(outputs_of_pairs_are_means_of_the_signals),
            cmocka_unit_test(the_right_body_is_run_where_an_output_reads_it),
-           cmocka_unit_test(outputs_of_rows_are_means_of_the_signals))
+           cmocka_unit_test(outputs_of_rows_are_means_of_the_signals),
+           cmocka_unit_test(the_largest_drift_ratio_is_that_of_all_places))

@@ -414,10 +414,56 @@ static void places_are_outputs(void **state)
 	reading_close(result);
 }
 
+/* Of a row whose left building has 1 and then 2 equal stories, beside a wall: w_j = 2 sqrt(k/m) sin((2 j - 1) pi/(4 N + 2)). */
+static void modes_are_of_the_buildings_of_the_cell(void **state)
+{
+	(void)state;
+	static const double pi = 3.14159265358979323846;
+	static const char swept[] =
+	    "{\"kind\": \"response\", \"sweep\": [{\"path\": \"/buildings/1/storeys\", \"values\": [1, 2]}], "
+	    "\"scene\": {\"buildings\": [{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 1.25, \"damping\": "
+	    "\"modal\", \"damping_ratio\": 0.02}, {\"storeys\": 2, \"mass_kg\": 2e5, \"stiffness_n_m\": 3e8}], "
+	    "\"contact\": {\"gap_m\": 0.01}, " HARMONIC(2, 1, 1) "}}";
+	struct reading *result = result_of(swept);
+	for (int cell = 0; cell < 2; cell++) {
+		double mass[2] = {0};
+		assert_int_equal(reading_count(result, "/cells/%d/modes", cell), 3 + cell + 1);
+		for (int k = 0; k < 3 + cell + 1; k++) {
+			char at[64];
+			snprintf(at, sizeof at, "/cells/%d/modes/%d", cell, k);
+			const int b = k >= 3, mode = b ? k - 2 : k + 1, n = b ? cell + 1 : 3;
+			const double f = reading_number(result, "%s/frequency_hz", at);
+			const double w = 2 * sqrt(3e8 / 2e5) * sin((2 * mode - 1) * pi / (4 * n + 2));
+			assert_true(reading_number(result, "%s/building", at) == b);
+			assert_true(reading_number(result, "%s/mode", at) == mode);
+			check_near(f * reading_number(result, "%s/period_s", at), 1, 1e-15);
+			if (b)
+				check_near(f, w / (2 * pi), 1e-13 * f);
+			else
+				check_near(reading_number(result, "%s/damping_ratio", at), 0.02, 0);
+			mass[b] += reading_number(result, "%s/effective_mass_ratio", at);
+		}
+		check_near(reading_number(result, "/cells/%d/modes/0/frequency_hz", cell), 1.25, 0);
+		for (int b = 0; b < 2; b++)
+			check_near(mass[b], 1, 1e-14);
+	}
+	reading_close(result);
+	// a wall has no modes, and two oscillators have no list
+	result = result_of(W);
+	assert_int_equal(reading_count(result, "/modes"), 4);
+	assert_true(reading_number(result, "/modes/3/building") == 0);
+	reading_close(result);
+	result = result_of("{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 1}, "
+	                   "{\"frequency_hz\": 2}], " HARMONIC(2, 1, 1) "}}");
+	assert_false(reading_has(result, "/modes"));
+	assert_true(reading_has(result, "/signals/0"));
+	reading_close(result);
+}
+
 CHECK_MAIN(cmocka_unit_test(rows_have_their_known_answers),
            cmocka_unit_test(one_story_rows_move_as_two_oscillators),
            cmocka_unit_test(equal_buildings_never_touch_with_force),
            cmocka_unit_test(a_wide_gap_is_never_closed),
            cmocka_unit_test(a_mirrored_row_has_mirrored_results), cmocka_unit_test(a_linear_row_scales),
            cmocka_unit_test(what_a_sweep_varies_is_what_a_document_says),
-           cmocka_unit_test(places_are_outputs))
+           cmocka_unit_test(places_are_outputs), cmocka_unit_test(modes_are_of_the_buildings_of_the_cell))

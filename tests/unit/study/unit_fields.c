@@ -66,12 +66,12 @@ static void every_field_says_what_it_takes(void **state)
 	    {"/outputs", "an array of 1 to 24 elements"},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-		char expected[1024];
+		char expected[FIELDS_EXPECTED_SIZE];
 		fields_expected(fields_find(cases[i].pattern), expected, sizeof expected);
 		assert_string_equal(expected, cases[i].expected);
 	}
 	for (int i = 0; i < fields_count; i++) {
-		char expected[1024];
+		char expected[FIELDS_EXPECTED_SIZE];
 		fields_expected(&fields[i], expected, sizeof expected);
 		assert_true(strlen(expected) > 0 && strlen(expected) < sizeof expected - 1);
 	}

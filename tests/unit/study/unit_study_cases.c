@@ -149,21 +149,25 @@ static int study_cases(const char *file, void (*show)(const struct study_case *o
 }
 
 static const char *const files[] = {"tests/cases/study_fields.txt", "tests/cases/study_rules.txt"};
-enum { N_FILES = sizeof files / sizeof files[0], FIELDS_MAX = 200 };
+enum {
+	N_FILES = sizeof files / sizeof files[0],
+	FIELDS_MAX = 200,
+	LINE_SIZE = sizeof(((struct problem *)0)->pointer) + sizeof(((struct problem *)0)->detail) + 4,
+};
 
 /* "POINTER: DETAIL", as files of cases have it. */
-static void line_of(const struct problem *problem, char line[1200])
+static void line_of(const struct problem *problem, char line[LINE_SIZE])
 {
-	snprintf(line, 1200, "%s: %s", problem->pointer, problem->detail);
+	snprintf(line, LINE_SIZE, "%s: %s", problem->pointer, problem->detail);
 }
 
 /* An expected problem, with patterns in braces replaced by the values that the fields accept. */
-static void filled(const char *expected, char line[1200])
+static void filled(const char *expected, char line[LINE_SIZE])
 {
 	const char *open = strchr(expected, '{'), *close = open ? strchr(open, '}') : NULL;
-	char pattern[120], takes[1024];
+	char pattern[120], takes[FIELDS_EXPECTED_SIZE];
 	if (!close || open[1] != '/') {
-		snprintf(line, 1200, "%s", expected);
+		snprintf(line, LINE_SIZE, "%s", expected);
 		return;
 	}
 	snprintf(pattern, sizeof pattern, "%.*s", (int)(close - open - 1), open + 1);
@@ -171,7 +175,7 @@ static void filled(const char *expected, char line[1200])
 	if (!field)
 		fail_msg("no field %s", pattern);
 	fields_expected(field, takes, sizeof takes);
-	snprintf(line, 1200, "%.*s%s%s", (int)(open - expected), expected, takes, close + 1);
+	snprintf(line, LINE_SIZE, "%.*s%s%s", (int)(open - expected), expected, takes, close + 1);
 }
 
 static int n_wrong; // number of cases that failed
@@ -196,7 +200,7 @@ static void judge(const struct study_case *of, void *context)
 	    .text = of->document, .length = strlen(of->document), .files = &records};
 	struct pound_study *study = study_from_document(&document, &problems);
 	bool as_expected = problems.n == of->n && !problems.n_more && !study == (of->n > 0);
-	char line[1200], want[1200];
+	char line[LINE_SIZE], want[LINE_SIZE];
 	(void)context;
 	for (int i = 0; i < problems.n && i < of->n; i++) {
 		line_of(&problems.list[i], line);
