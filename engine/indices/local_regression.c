@@ -91,6 +91,7 @@ struct space {
 	double *group_sums; /* (groups, at most n_rows) */
 	double *influence;  /* of each row on each input's index  (n_inputs x n_rows) */
 	double *step;       /* extrapolation step from reach K to distance 0, of each input's index  (n_inputs) */
+	double *square;     /* of a discrete input: squared predictions over the variance, else INFINITY */
 };
 
 static struct space carve(double *scratch, int n_rows, int n_inputs)
@@ -105,23 +106,39 @@ static struct space carve(double *scratch, int n_rows, int n_inputs)
 	                      .order = (size_t *)(scratch + 8 * n),
 	                      .group_sums = scratch + 9 * n,
 	                      .influence = scratch + 10 * n,
-	                      .step = scratch + (10 + (size_t)n_inputs) * n};
+	                      .step = scratch + (10 + (size_t)n_inputs) * n,
+	                      .square = scratch + (10 + (size_t)n_inputs) * n + n_inputs};
 }
 
 size_t pound_local_regression_scratch(const struct pound_sample_values *shape)
 {
-	return (size_t)(10 + shape->n_inputs) * shape->n_rows + shape->n_inputs;
+	return (size_t)(10 + shape->n_inputs) * shape->n_rows + 2 * (size_t)shape->n_inputs;
 }
 
-/* Adds a sample block, with the rows in `order`; levels: values of a discrete input, 0: other inputs. */
+/* Adds a sample block, with the rows in `order`; levels: values of a discrete input, 0: other inputs.
+ *
+ * Means at values are of outputs about the block's own mean.  Of n rows, with the variance W within the values and its part A that
+ * is additive in the other inputs, their mean product lacks W / n:
+ *
+ *   random rows           the square of the block's mean has W / n
+ *   a Latin hypercube     the square of the block's mean has (W - A) / n, and the product of two rows with one value -A / n
+ *
+ * The mean of y (y - fit) estimates W.
+ */
 static void block_add(const struct pound_rows *rows, int sample, double grand, int levels,
                       const struct space *at)
 {
 	const int n = rows->n_rows, n_samples = rows->n_samples, reach = reach_of(n);
 	if (pound_stopped(rows->stop))
 		return;
+	double mean = grand;
+	if (levels > 0) {
+		mean = 0.0;
+		for (int k = 0; k < n; k++)
+			mean += rows->y[at->order[k] * n_samples + sample] / n;
+	}
 	for (int k = 0; k < n; k++)
-		at->y[k] = rows->y[at->order[k] * n_samples + sample] - grand;
+		at->y[k] = rows->y[at->order[k] * n_samples + sample] - mean;
 	if (levels > 0) {
 		levels_fit(at->y, at->level, n, at->fit);
 		memcpy(at->fit_wide, at->fit, sizeof *at->fit * (size_t)n);
@@ -130,18 +147,35 @@ static void block_add(const struct pound_rows *rows, int sample, double grand, i
 		pound_local_regression_fit(at->y, n, 2 * reach, at->fit_wide);
 	}
 	for (int k = 0; k < n; k++) {
-		at->sums.near[at->order[k]] += at->y[k] * at->fit[k] / n_samples;
-		at->sums.wide[at->order[k]] += at->y[k] * at->fit_wide[k] / n_samples;
+		const double within = levels > 0 ? at->y[k] * (at->y[k] - at->fit[k]) / n : 0.0;
+		at->sums.near[at->order[k]] += (at->y[k] * at->fit[k] + within) / n_samples;
+		at->sums.wide[at->order[k]] += (at->y[k] * at->fit_wide[k] + within) / n_samples;
 		at->sums.square[at->order[k]] += at->fit_wide[k] * at->fit_wide[k] / n_samples;
 	}
 }
 
-static double half_width(const struct pound_rows *rows, int n, const struct space *at, int input,
-                         double share)
+/* Distances of the ends of the interval from the estimate. */
+struct sides {
+	double below, above;
+};
+
+/* The interval of a line is symmetric.  The variance of the estimate from means at values, h^2 over z^2, is proportional to their mean
+ * square Q.  An estimate that is too low by D comes from a mean square of Q + D: with the variance at that end, D is the root of
+ *
+ *   D^2 = h^2 (Q + D) / Q          D = sqrt(h^2 + r^2 / 4) +- r / 2,  r = h^2 / Q
+ *
+ * Source   Wilson 1927, J. Am. Stat. Assoc. 22, 209-212: for a proportion
+ * Test     unit_local_regression: a_weak_discrete_input_has_no_bias_and_its_interval_holds
+ */
+static struct sides sides_of(const struct pound_rows *rows, int n, const struct space *at, int input,
+                             double share)
 {
 	const double *influence = at->influence + (size_t)input * rows->n_rows;
 	const double sampling = share * pound_jackknife_half_width(influence, n, &rows->scatter, at->group_sums);
-	return sqrt(sampling * sampling + at->step[input] * at->step[input]);
+	const double half = sqrt(sampling * sampling + at->step[input] * at->step[input]);
+	const double square = share * at->square[input], lean = square > 0.0 ? 0.5 * half * half / square : 0.0;
+	const double middle = lean > 0.0 ? sqrt(half * half + lean * lean) : half;
+	return (struct sides){middle - lean, middle + lean};
 }
 
 /* Index and interval from the rows' mean products and the variance of their outputs about the grand mean.
@@ -153,17 +187,18 @@ static double half_width(const struct pound_rows *rows, int n, const struct spac
  * The influence of a row on mean(y m), with the prediction m estimated from other rows, is 2 y m - m^2.  The difference of two
  * such means consists of products of the errors of two rows; its influence is sqrt(2) y (m - m'), as each pair counts twice.
  */
-static struct pound_estimate influence_interval(const struct pound_rows *rows, int input,
+static struct pound_estimate influence_interval(const struct pound_rows *rows, int input, int levels,
                                                 const struct space *at)
 {
 	const int n = rows->n_rows;
 	const double further = 1.0 + 1.0 / reach_of(n);
 	double *influence = at->influence + (size_t)input * n;
-	double v = 0.0, near = 0.0, wide = 0.0;
+	double v = 0.0, near = 0.0, wide = 0.0, square = 0.0;
 	for (int i = 0; i < n; i++) {
 		v += at->variance[i] / n;
 		near += at->sums.near[i] / n;
 		wide += at->sums.wide[i] / n;
+		square += at->sums.square[i] / n;
 	}
 	const bool varies = v > rows->variance_floor;
 	const double s = varies ? (near + further * (near - wide)) / v : NAN;
@@ -173,8 +208,9 @@ static struct pound_estimate influence_interval(const struct pound_rows *rows, i
 		influence[i] =
 		    (2.0 * at->sums.wide[i] - at->sums.square[i] + M_SQRT2 * change - s * at->variance[i]) / v;
 	}
-	const double half = half_width(rows, n, at, input, 1.0);
-	return (struct pound_estimate){s, s - half, s + half};
+	at->square[input] = levels > 0 ? square / v : INFINITY;
+	const struct sides sides = sides_of(rows, n, at, input, 1.0);
+	return (struct pound_estimate){s, s - sides.below, s + sides.above};
 }
 
 /* Mean over the samples of a row of the squared outputs about the grand mean, less their noise variance. */
@@ -222,7 +258,7 @@ static void rows_sort(const struct pound_rows *rows, const double *x, int matrix
  * Memory   scratch    (pound_local_regression_scratch)
  *
  * The numerator needs no noise correction: a row and its neighbors have different signals.  For a discrete input
- * (pound_rows_levels) the means at its values replace the lines: exact, without extrapolation.
+ * (pound_rows_levels) the means at its values replace the lines: without bias, without extrapolation.
  *
  * Valid    Latin hypercube and random designs of 30 rows or more; the bias of a jump is removed, the bias of a wave as long as
  *          some 8 reaches is 0.04 of the variance, and inside the interval
@@ -246,7 +282,7 @@ void pound_local_regression_first(const struct pound_rows *rows, const double *x
 					block_add(rows, p, grand, levels, &at);
 		}
 		enough &= !pound_stopped(rows->stop);
-		first[j] = enough ? influence_interval(rows, j, &at) : (struct pound_estimate){NAN, NAN, NAN};
+		first[j] = enough ? influence_interval(rows, j, levels, &at) : (struct pound_estimate){NAN, NAN, NAN};
 	}
 }
 
@@ -273,6 +309,8 @@ void pound_local_regression_first_rows(const struct pound_rows *rows, int n, dou
 		of_all += at.variance[i] / rows->n_rows;
 		of_first += i < n ? at.variance[i] / n : 0.0;
 	}
-	for (int j = 0; j < rows->n_inputs && !pound_stopped(rows->stop); j++)
-		half[j] = half_width(rows, n, &at, j, of_all / of_first);
+	for (int j = 0; j < rows->n_inputs && !pound_stopped(rows->stop); j++) {
+		const struct sides sides = sides_of(rows, n, &at, j, of_all / of_first);
+		half[j] = 0.5 * (sides.below + sides.above);
+	}
 }

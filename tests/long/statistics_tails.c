@@ -8,14 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INPUTS = 16, JOBS = 200, SIZES = 2 };
+enum { INPUTS = 16, LEVELS_MAX = 6, JOBS = 200, SIZES = 2 };
 
 static const int sizes[SIZES] = {250, 1000};
 
-/* A function of independent uniform variables, and how its exact indices are computed. */
+/* A function of independent variables, uniform or discrete, and how its exact indices are computed. */
 struct tail {
 	const char *name;
 	int n_inputs;
+	int levels[INPUTS]; /* a discrete input has the values 0, 1, ... with equal probabilities; 0: uniform */
 	double (*y)(const double *u);
 	void (*exact)(const struct tail *tail, double *value); /* first-order, then total  (2 x n_inputs) */
 	double factor[INPUTS]; /* product: mean square over squared mean of each factor (n_inputs) */
@@ -232,6 +233,27 @@ static void smooth_16_exact(const struct tail *tail, double *value)
 	}
 }
 
+/* Three discrete factors of mean 1 and few values beside a factor that nearly decides alone: smooth, or of waves that polynomials
+ * cannot follow.  Values are not in the order of their effects. */
+static const double discrete_factor[4][LEVELS_MAX] = {
+    {0}, {0.88, 1.12}, {1.02, 0.92, 1.06}, {0.99, 1.05, 0.97, 1.01, 0.95, 1.03}};
+
+static double discrete(const double *u)
+{
+	double y = 1.5 - 1.2 * fabs(u[0] - 0.7);
+	for (int j = 1; j < 4; j++)
+		y *= discrete_factor[j][(int)u[j]];
+	return y;
+}
+
+static double discrete_waves(const double *u)
+{
+	double y = 1.0 + 0.8 * sin(16.0 * M_PI * u[0]);
+	for (int j = 1; j < 4; j++)
+		y *= discrete_factor[j][(int)u[j]];
+	return y;
+}
+
 static struct tail tails[] = {
     {.name = "lognormal", .n_inputs = 4, .y = lognormal, .exact = product},
     {.name = "lognormal_8", .n_inputs = 8, .y = lognormal_8, .exact = product},
@@ -245,9 +267,22 @@ static struct tail tails[] = {
     {.name = "g_15", .n_inputs = 15, .y = g_15, .exact = product},
     {.name = "any_of_16", .n_inputs = 16, .y = any_of_16, .exact = product},
     {.name = "smooth_16", .n_inputs = 16, .y = smooth_16, .exact = smooth_16_exact},
+    {.name = "discrete", .n_inputs = 4, .levels = {0, 2, 3, 6}, .y = discrete, .exact = product},
+    {.name = "discrete_waves", .n_inputs = 4, .levels = {0, 2, 3, 6}, .y = discrete_waves, .exact = product},
 };
 
 enum { TAILS = sizeof tails / sizeof tails[0] };
+
+/* Mean square over squared mean of a discrete factor. */
+static double discrete_ratio(const double *factor, int levels)
+{
+	double sum = 0.0, squares = 0.0;
+	for (int k = 0; k < levels; k++) {
+		sum += factor[k];
+		squares += factor[k] * factor[k];
+	}
+	return squares * levels / (sum * sum);
+}
 
 static void factors_fill(void)
 {
@@ -264,6 +299,13 @@ static void factors_fill(void)
 				*r = 1.0 + 1.0 / (3.0 * (1.0 + g_weight(j)) * (1.0 + g_weight(j)));
 			else if (tail->y == any_of_16)
 				*r = 1.0 / (1.0 - 0.0008 * (j < 4 ? 10.0 : 2.0));
+			else if (tail->levels[j] > 0)
+				*r = discrete_ratio(discrete_factor[j], tail->levels[j]);
+			else if (tail->y ==
+			         discrete) // |u - 0.7|: mean (0.7^2 + 0.3^2) / 2, mean square (0.7^3 + 0.3^3) / 3
+				*r = (2.25 - 3.6 * 0.29 + 1.44 * 0.37 / 3.0) / pow(1.5 - 1.2 * 0.29, 2);
+			else if (tail->y == discrete_waves)
+				*r = 1.32;
 		}
 }
 
@@ -315,8 +357,16 @@ static void seed_run(struct tail_cell *cell, uint64_t seed)
 	static char *names[] = {name};
 	const int d = cell->tail->n_inputs;
 	struct pound_input inputs[INPUTS] = {0};
+	static const double values[LEVELS_MAX] = {0, 1, 2, 3, 4, 5};
+	int steps = 0;
+	while (!pound_distribution_steps(steps))
+		steps++;
 	for (int j = 0; j < d; j++)
-		inputs[j].distribution = (struct pound_distribution){.type = 0, .p = {0.0, 1.0}};
+		inputs[j].distribution = cell->tail->levels[j] > 0
+		                             ? (struct pound_distribution){.type = steps,
+		                                                           .n_values = cell->tail->levels[j],
+		                                                           .values = values}
+		                             : (struct pound_distribution){.type = 0, .p = {0.0, 1.0}};
 	const struct pound_study study = {.kind = POUND_KIND_SENSITIVITY,
 	                                  .elsewhere = true,
 	                                  .n_inputs = d,
