@@ -131,8 +131,9 @@ struct space {
 	double *factor;  /* (terms x terms) */
 	double *
 	    coefficients; /* of the fits without a fold each, then of all, for each degree  ((FOLDS + 1) x (degree + 1) x terms) */
-	double *fit;                              /* (n_rows) */
-	double sum[FOLDS + 1], square[FOLDS + 1]; /* of the outputs */
+	double *fit; /* (n_rows) */
+	double sum[FOLDS + 1], square[FOLDS + 1],
+	    noise[FOLDS + 1]; /* of the outputs, and their noise variances */
 	int n[FOLDS + 1];
 };
 
@@ -175,6 +176,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 	memset(s->product, 0, sizeof *s->product * (FOLDS + 1) * n);
 	memset(s->sum, 0, sizeof s->sum);
 	memset(s->square, 0, sizeof s->square);
+	memset(s->noise, 0, sizeof s->noise);
 	memset(s->n, 0, sizeof s->n);
 	for (int i = 0; i < p->n_rows; i++) {
 		const int fold = i % FOLDS;
@@ -187,6 +189,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 		}
 		s->sum[fold] += y[i];
 		s->square[fold] += y[i] * y[i];
+		s->noise[fold] += p->noise[i] * p->noise[i];
 		s->n[fold]++;
 	}
 	for (int fold = 0; fold < FOLDS; fold++) {
@@ -196,6 +199,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 			s->product[FOLDS * n + k] += s->product[(size_t)fold * n + k];
 		s->sum[FOLDS] += s->sum[fold];
 		s->square[FOLDS] += s->square[fold];
+		s->noise[FOLDS] += s->noise[fold];
 		s->n[FOLDS] += s->n[fold];
 	}
 }
@@ -298,7 +302,8 @@ static void values_of(const struct pound_polynomial *p, const struct space *s, i
 	const double count = s->n[FOLDS] - (fold < FOLDS ? s->n[fold] : 0),
 	             sum = s->sum[FOLDS] - (fold < FOLDS ? s->sum[fold] : 0.0),
 	             squares = s->square[FOLDS] - (fold < FOLDS ? s->square[fold] : 0.0),
-	             variance = (squares - sum * sum / count) / (count - 1.0);
+	             of_noise = (s->noise[FOLDS] - (fold < FOLDS ? s->noise[fold] : 0.0)) / count,
+	             variance = (squares - sum * sum / count) / (count - 1.0) - of_noise;
 	memset(value, 0, sizeof *value * (size_t)n_values(p));
 	factor_fill(p, s, fold);
 	for (int t = 1; t < used; t++) {
@@ -346,7 +351,7 @@ static void values_fill(struct pound_polynomial *p, const struct space *s, doubl
 
 /* Fits the polynomial that predicts best, and computes its indices.
  *
- * Given    p           n_rows, n_inputs, u           u in (0, 1)
+ * Given    p           n_rows, n_inputs, u, noise    u in (0, 1); rows in no order
  *          y           (n_rows)                      less their mean
  * Returns  p           all other members
  * Memory   scratch     (pound_polynomial_scratch)    held by p
@@ -375,7 +380,8 @@ void pound_polynomial_fit(struct pound_polynomial *p, const double *y, double *s
 	for (int degree = 1; degree <= p->degree; degree++)
 		if (error[degree] < error[p->chosen])
 			p->chosen = degree;
-	p->explained = 1.0 - error[p->chosen] / error[0];
+	// without the noise, which no polynomial predicts
+	p->explained = 1.0 - fmax(0.0, error[p->chosen] - s.noise[FOLDS]) / (error[0] - s.noise[FOLDS]);
 	p->coefficients = coefficients_of(p, &s, FOLDS, p->chosen);
 	p->fit = s.fit;
 	predictions_fill(p, &s);

@@ -47,9 +47,10 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 	struct problems problems;
 	static double points[N * 2], values[4 * N], sums[N];
 	static size_t order[N];
+	static int cell[N];
 	static struct pound_given_indices indices;
 	struct pound_input inputs[2] = {{.name = "a"}, {.name = "b"}};
-	struct pound_given given = {.n_rows = N, .n_inputs = 2, .x = points, .inputs = inputs};
+	struct pound_given given = {.n_rows = N, .n_inputs = 2, .sorted = true, .x = points, .inputs = inputs};
 	struct pound_given_checks checks;
 	double *scratch = calloc(pound_given_scratch(N, 2), sizeof *scratch);
 	size_t n;
@@ -60,9 +61,9 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 		points[2 * i + 1] = (37 * i) % N;
 		sums[i] = points[2 * i] + points[2 * i + 1];
 	}
-	pound_given_inputs(&given, values, order);
+	pound_given_inputs(&given, values, cell, order);
 	pound_given_check(&given, scratch, &checks);
-	pound_given_estimate(&given, &checks, sums, scratch, &indices);
+	pound_given_estimate(&given, &checks, &(struct pound_given_output){sums, NULL}, scratch, &indices);
 	for (int k = 0; k < 2; k++) {
 		// outputs in a table with the inputs again are the same outputs
 		read_all(&x, &y, one, k ? both : two);
@@ -109,7 +110,9 @@ static void samples_without_a_number_are_left_out_and_counted(void **state)
 	given_table_free(&y);
 	read_all(&x, &y, one, few);
 	assert_null(given_indices(&x, &y, &problems, &n));
-	assert_string_equal(problems.list[0].detail, "60 samples are complete, expected at least 64");
+	assert_string_equal(
+	    problems.list[0].detail,
+	    "60 samples are complete, expected at least 64; with fewer runs use a study: `pound design'");
 	given_table_free(&x);
 	given_table_free(&y);
 	free(one);
