@@ -104,8 +104,7 @@ static struct pound_estimate index_of(const struct factorial *f, const struct te
 	}
 	const double share = levels / f->cells, value = (part - f->t * share) / f->variance;
 	for (int c = 0; c < f->cells; c++) {
-		const double derivative =
-		    2.0 * (f->derivative[c] - value * f->mean[c]) / (f->cells * f->variance);
+		const double derivative = 2.0 * (f->derivative[c] - value * f->mean[c]) / (f->cells * f->variance);
 		square += derivative * derivative * f->noise[c];
 	}
 	const double of_noise = share * f->t / f->variance;
@@ -182,8 +181,8 @@ static void others_fill(const struct factorial *f, struct pound_given_indices *i
 		indices->total[i] = index_of(f, total, 2, &uncorrected);
 		for (int j = i + 1; j < d; j++) {
 			const struct term second[] = {{1u << i | 1u << j, 1.0}, {1u << i, -1.0}, {1u << j, -1.0}};
-			indices->second[indices->n_second++] = (struct pound_set_index){
-			    second[0].inputs, index_of(f, second, 3, &uncorrected)};
+			indices->second[indices->n_second++] =
+			    (struct pound_set_index){second[0].inputs, index_of(f, second, 3, &uncorrected)};
 		}
 	}
 }

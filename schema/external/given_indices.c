@@ -31,14 +31,14 @@ struct column {
 struct samples {
 	struct pound_given given;
 	const struct given_table *outputs;
-	struct column *columns;           /* (outputs->n_columns) */
-	char **names;                     /* of the outputs  (n_outputs) */
-	int n_outputs, n_rows, missing;   /* n_rows: complete lines */
-	bool noisy;                       /* outputs have variances or replicates */
-	bool repeated;                    /* every sample has two lines or more */
-	int *row;                         /* line of each complete row in the tables  (n_rows) */
-	int *sample, *count;              /* sample of each row, rows of each sample  (n_rows) each */
-	double *x, *y, *noise;            /* y, noise: one output  (n_rows) each */
+	struct column *columns;         /* (outputs->n_columns) */
+	char **names;                   /* of the outputs  (n_outputs) */
+	int n_outputs, n_rows, missing; /* n_rows: complete lines */
+	bool noisy;                     /* outputs have variances or replicates */
+	bool repeated;                  /* every sample has two lines or more */
+	int *row;                       /* line of each complete row in the tables  (n_rows) */
+	int *sample, *count;            /* sample of each row, rows of each sample  (n_rows) each */
+	double *x, *y, *noise;          /* y, noise: one output  (n_rows) each */
 	double *values, *scratch;
 	int *cell, *table;
 	size_t *order;
@@ -49,9 +49,9 @@ static void samples_free(struct samples *s)
 {
 	for (int o = 0; o < s->n_outputs; o++)
 		free(s->names[o]);
-	void *const memory[] = {s->columns, s->names,   s->row,  s->sample, s->count, s->x,       s->y,
-	                        s->noise,   s->values,  s->scratch, s->cell,   s->table, s->order, s->indices,
-	                        s->given.inputs};
+	void *const memory[] = {s->columns, s->names, s->row,   s->sample,  s->count,
+	                        s->x,       s->y,     s->noise, s->values,  s->scratch,
+	                        s->cell,    s->table, s->order, s->indices, s->given.inputs};
 	for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
 		free(memory[k]);
 }
@@ -114,7 +114,7 @@ static void outputs_check(struct samples *s, struct problems *problems)
 	bool variances = false, replicates = false;
 	for (int o = 0; o < s->n_outputs; o++) {
 		const struct output_columns n = output_columns(s, o);
-		variances |= n.variances > 0;
+		variances |= n.variances > 0 && n.single > 0;
 		replicates |= n.replicates > 0;
 	}
 	for (int o = 0; o < s->n_outputs; o++) {
@@ -122,8 +122,9 @@ static void outputs_check(struct samples *s, struct problems *problems)
 		if (n.single == 0 && n.replicates == 0)
 			problems_add(problems, s->names[o], "has a variance, but no column of its own");
 		else if (replicates && (n.replicates == 0 || n.single > 0 || n.variances > 0))
-			problems_add(problems, s->names[o],
-			             "must have columns NAME.replicate1, NAME.replicate2, ... alone, as other outputs have");
+			problems_add(
+			    problems, s->names[o],
+			    "must have columns NAME.replicate1, NAME.replicate2, ... alone, as other outputs have");
 		else if (replicates && (n.most < 2 || n.replicates != n.most))
 			// column names are unique, so if the number of columns is right, each number occurs once
 			problems_add(problems, s->names[o], "must have its replicates numbered from 1 on, at least 2");
@@ -209,9 +210,10 @@ static void samples_join(const struct given_table *x, struct samples *s, struct 
 	for (int c = 0; c < s->outputs->n_columns; c++)
 		s->given.sorted |= column_sorted(s, s->outputs, c);
 	if (n < POUND_GIVEN_ROWS_MIN)
-		problems_add(problems, "",
-		             "%d samples are complete, expected at least %d; with fewer runs use a study: `pound design'", n,
-		             POUND_GIVEN_ROWS_MIN);
+		problems_add(
+		    problems, "",
+		    "%d samples are complete, expected at least %d; with fewer runs use a study: `pound design'", n,
+		    POUND_GIVEN_ROWS_MIN);
 	else if (s->given.n_rows < POUND_GIVEN_ROWS_MIN)
 		problems_add(problems, "", "the %d complete lines have %d different inputs, expected at least %d", n,
 		             s->given.n_rows, POUND_GIVEN_ROWS_MIN);
@@ -301,8 +303,7 @@ static struct pound_given_output output_of(struct samples *s, int output)
 	for (int k = 0; k < s->n_rows; k++)
 		s->y[s->sample[k]] += value_of(s, output, k, &variance) / s->count[s->sample[k]];
 	for (int k = 0; k < s->n_rows; k++) {
-		const double n = s->count[s->sample[k]],
-		             off = value_of(s, output, k, &variance) - s->y[s->sample[k]];
+		const double n = s->count[s->sample[k]], off = value_of(s, output, k, &variance) - s->y[s->sample[k]];
 		s->noise[s->sample[k]] += s->repeated ? off * off / (n - 1.0) / n : variance / n / n;
 	}
 	return (struct pound_given_output){s->y, s->given.noise_known ? s->noise : NULL};

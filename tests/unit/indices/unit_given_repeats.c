@@ -250,7 +250,8 @@ static void one_row_for_each_combination_has_first_order_indices(void **state)
 	int missed = 0;
 	double mean = 0.0;
 	// u1 + noise; 12 levels of 0 to 1 have the variance (L + 1) / (L - 1) / 12
-	const double variance = (L + 1.0) / (L - 1) / 12, noise = 0.3, exact = variance / (variance + noise * noise);
+	const double variance = (L + 1.0) / (L - 1) / 12, noise = 0.3,
+	             exact = variance / (variance + noise * noise);
 	for (int seed = 0; seed < SEEDS; seed++) {
 		struct given_samples s;
 		static struct pound_given_indices indices;
@@ -388,8 +389,8 @@ static void heavy_tails_are_noted(void **state)
 		light += given_says(indices.notes, POUND_GIVEN_FEW_DECIDE);
 		given_free(&s);
 	}
-	check_report("%d of %d intervals missed, %d of them without a note; %d of %d sets noted", missed, 3 * SEEDS,
-	             missed_silent, noted, SEEDS);
+	check_report("%d of %d intervals missed, %d of them without a note; %d of %d sets noted", missed,
+	             3 * SEEDS, missed_silent, noted, SEEDS);
 	assert_true(noted >= 0.95 * SEEDS);
 	assert_true(missed_silent <= 0.01 * 3 * SEEDS);
 	assert_int_equal(light, 0);
