@@ -140,18 +140,17 @@ static void means_fill(struct factorial *f, const struct pound_given_output *out
 static void interactions_take(struct factorial *f)
 {
 	const int d = f->given->n_inputs;
-	const double all = f->variance;
-	double rest = all, freedom = f->cells - 1.0;
+	double rest = f->variance, freedom = f->cells - 1.0, own[POUND_INPUTS_MAX];
 	for (int i = 0; i < d; i++) {
-		const double own = closed(f, (struct term){1u << i, 0.0});
-		rest -= own;
+		own[i] = closed(f, (struct term){1u << i, 0.0});
+		rest -= own[i];
 		freedom -= f->given->levels[i] - 1.0;
-		for (int j = i + 1; j < d && d > 2; j++) {
-			rest -= closed(f, (struct term){1u << i | 1u << j, 0.0}) - own -
-			        closed(f, (struct term){1u << j, 0.0});
+	}
+	for (int i = 0; i < d && d > 2; i++)
+		for (int j = i + 1; j < d; j++) {
+			rest -= closed(f, (struct term){1u << i | 1u << j, 0.0}) - own[i] - own[j];
 			freedom -= (f->given->levels[i] - 1.0) * (f->given->levels[j] - 1.0);
 		}
-	}
 	f->freedom = freedom;
 	f->t = freedom > 0.0 ? fmax(0.0, rest) * f->cells / freedom : 0.0;
 	for (int c = 0; c < f->cells; c++)

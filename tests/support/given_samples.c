@@ -5,7 +5,7 @@
 
 #include "tests/support/check.h"
 
-static uint64_t state_of_draws;
+static _Thread_local uint64_t state_of_draws;
 
 /* Uniform draws in (0, 1): a linear congruential sequence of 64 bits, its 53 highest (Knuth, MMIX). */
 double given_uniform(void)
