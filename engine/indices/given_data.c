@@ -1,11 +1,12 @@
 /* given_data.c - sensitivity indices from given data.
  *
  * 1. An input is replaced by its rank among the samples, which is uniform whatever the distribution.  An input with few
- *    values, each of which occurs often, is discrete.
+ *    values, each of which occurs often, is discrete (given_repeats.c).  Rows are shuffled: their order is used for one check only.
  * 2. The samples are checked: inputs must be independent of each other (rank correlation, and chi-square of the table of
  *    two inputs), and samples near in one input may be near in the others by chance only.
  * 3. S1 is from local_regression.c or from the polynomial (given_polynomial.c), whichever has the narrower interval; ST and
- *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.
+ *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.  Those of a complete factorial
+ *    design are by the analysis of variance (given_factorial.c).
  * 4. Conditional means are the polynomial's plus its residual's (conditional_mean.c). */
 #include "engine/given.h"
 
