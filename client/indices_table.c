@@ -37,7 +37,10 @@ static void interval(char *text, size_t size, const struct reading *result, cons
 	for (int i = 0; i < 3; i++) {
 		double value = reading_number(result, "%s/%s%s", of, index, ends[i]);
 		const char *form = exact || i == 0 ? "%6.3f" : "%.2f", *none = exact ? "     -" : "-";
-		snprintf(part[i], sizeof part[i], isfinite(value) ? form : none, value);
+		if (isfinite(value))
+			table_round(part[i], sizeof part[i], form, value);
+		else
+			snprintf(part[i], sizeof part[i], "%s", none);
 	}
 	snprintf(text, size, exact ? "%s [%s, %s]" : "%s [%s,%s]", part[0], part[1], part[2]);
 	if (!strpbrk(text, "0123456789"))
@@ -232,8 +235,10 @@ static double widest(const struct reading *result, const char *accuracy, int lev
 static void print_accuracy(const struct reading *result, const char *output)
 {
 	char accuracy[PATH_SIZE];
-	char *line = command_text("%s", "widest 95 % interval:");
 	snprintf(accuracy, sizeof accuracy, "%s/accuracy", output);
+	if (reading_count(result, "%s/rows", accuracy) == 0)
+		return;
+	char *line = command_text("%s", "widest 95 % interval:");
 	for (int k = 0; k < reading_count(result, "%s/rows", accuracy); k++) {
 		double half = widest(result, accuracy, k);
 		if (!isfinite(half)) {
@@ -489,7 +494,10 @@ void given_data_print(const struct reading *result)
 		table_say(reading_text(result, "/given/most_dependent/0"));
 		fputs(" and ", stdout);
 		table_say(reading_text(result, "/given/most_dependent/1"));
-		printf(", rank correlation %.2f\n", reading_number(result, "/given/rank_correlation"));
+		char correlation[16];
+		table_round(correlation, sizeof correlation, "%.2f",
+		            reading_number(result, "/given/rank_correlation"));
+		printf(", rank correlation %s\n", correlation);
 	}
 	for (int k = 0; k < reading_count(result, "/given/notes"); k++)
 		print_note(reading_text(result, "/given/notes/%d", k));

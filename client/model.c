@@ -90,10 +90,13 @@ static bool table_read(struct given_table *table, enum given_role role, const ch
  */
 static enum outcome given_print(const struct options *options)
 {
-	enum outcome outcome;
-	struct given_table x, y = {0};
-	if (table_read(&x, GIVEN_INPUTS, options->argument, &outcome) &&
-	    table_read(&y, GIVEN_OUTPUTS, options->second, &outcome)) {
+	enum outcome outcome, of_outputs;
+	struct given_table x, y;
+	// both are read, so that all errors are reported at once
+	const bool inputs = table_read(&x, GIVEN_INPUTS, options->argument, &outcome),
+	           outputs = table_read(&y, GIVEN_OUTPUTS, options->second, &of_outputs);
+	outcome = inputs ? of_outputs : outcome;
+	if (inputs && outputs) {
 		size_t n;
 		struct problems problems;
 		char *json = given_indices(&x, &y, &problems, &n);

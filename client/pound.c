@@ -71,7 +71,7 @@ static const struct command COMMANDS[] = {
 	 "it is known, NAME.variance, the variance of a mean over replicates divided by their number; or a column for each "
 	 "replicate: NAME.replicate1, NAME.replicate2, ...  With --given, the "
 	 "first file is X.csv: samples of the inputs that were drawn or observed elsewhere, with a column for each input; Y.csv "
-	 "has the outputs of the same lines."},
+	 "has the outputs of the same lines.  Lines with the same inputs are replicates."},
 	{"evaluate", "STUDY.json", "mNjJOGKSWfT", false, {"json", "table", "csv"}, evaluate_model,
 	 "run a model of your own on a study's design by UM-Bridge and print its indices",
 	 "Runs every row of `pound design' on the model at --model, several at a time, and prints what `pound indices' prints.  "

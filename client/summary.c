@@ -192,14 +192,16 @@ static void print_estimate(const struct reading *result, const char *input, cons
 {
 	const double value = reading_number(result, "%s/%s", input, index);
 	const double half = half_width(result, input, index);
+	char rounded[16];
+	table_round(rounded, sizeof rounded, "%6.3f", value);
 	if (!isfinite(value))
 		printf("  %s %6s %7s", index, "-", "");
 	else if (half > 0 && half < 0.0005)
-		printf("  %s %6.3f +-%-5s", index, value, "<.001");
+		printf("  %s %s +-%-5s", index, rounded, "<.001");
 	else if (isfinite(half))
-		printf("  %s %6.3f +-%-5.3f", index, value, half);
+		printf("  %s %s +-%-5.3f", index, rounded, half);
 	else
-		printf("  %s %6.3f %7s", index, value, "");
+		printf("  %s %s %7s", index, rounded, "");
 }
 
 /* Rows needed for reliable intervals, read from the note of the output; NAN: the present rows are enough. */

@@ -74,6 +74,14 @@ void table_number(struct table *table, double value)
 	cell->text = command_sure(strdup(text));
 }
 
+void table_round(char *text, size_t size, const char *format, double value)
+{
+	snprintf(text, size, format, value);
+	const char *sign = strchr(text, '-');
+	if (sign && !strpbrk(sign, "123456789"))
+		snprintf(text, size, format, 0.0);
+}
+
 /* Counts the bytes that start a UTF-8 character; wide and combining characters count as one. */
 int table_width(const char *text)
 {

@@ -25,6 +25,9 @@ void table_print(const struct table *table, int indent);
 void table_print_csv(const struct table *table);
 void table_close(struct table *table);
 
+/* A number as text, by a format of printf, without the sign of a zero that is left after rounding. */
+void table_round(char *text, size_t size, const char *format, double value);
+
 /* Columns a text takes on a terminal: its characters, not its bytes. */
 int table_width(const char *text);
 

@@ -1,6 +1,6 @@
-/* given.h - sensitivity indices from given data: samples drawn elsewhere, one output value each, no design.
+/* given.h - sensitivity indices from given data: samples drawn elsewhere, no design.
  *
- *   inputs -> check, once -> indices of each output
+ *   rows -> samples: replicates are joined -> check, once -> indices of each output
  *
  * Nothing is allocated; any thread. */
 #ifndef GIVEN_H
@@ -10,11 +10,18 @@
 
 enum { POUND_GIVEN_ROWS_MIN = 64 };
 
-/* Samples of independent draws of the inputs. */
+/* Samples of independent draws of the inputs, or a complete factorial design. */
 struct pound_given {
 	int n_rows, n_inputs;       /* [POUND_GIVEN_ROWS_MIN, POUND_ROWS_MAX], [1, POUND_INPUTS_MAX] */
 	const double *x;            /* finite; each input has at least two distinct values  (n_rows x n_inputs) */
+	bool joined;                /* samples are means of replicates, by pound_given_join */
+	bool noise_known;           /* the noise variance of every sample's output is known */
+	bool sorted;                /* the rows are sorted by a column: their order says nothing */
 	struct pound_input *inputs; /* empirical distributions of x, by pound_given_inputs  (n_inputs) */
+	/* of a complete factorial design, by pound_given_inputs: all combinations of the levels, equally often */
+	int replicates;               /* rows of each combination; 0: not a factorial design */
+	int levels[POUND_INPUTS_MAX]; /* (n_inputs) */
+	int *cell;                    /* combination of each row, the last input's level fastest  (n_rows) */
 };
 
 /* Notes on the samples: X(enumerator, sentence). */
@@ -25,20 +32,26 @@ struct pound_given {
 	X(POUND_GIVEN_DEPENDENT,                                                          \
 	  "the inputs are not independent: S1 includes what an input explains through the inputs that it depends on, and ST and S2 cannot be estimated") \
 	X(POUND_GIVEN_ARRANGED,                                                           \
-	  "samples that are near in one input have a pattern in another, as points of a Sobol' or Halton sequence or rows of `pound design' have: S1 needs a polynomial that fits; for rows of `pound design' use `pound indices STUDY.json Y.csv'") \
+	  "samples that are near in one input have a pattern in another, as points of a Sobol' or Halton sequence, an incomplete grid or rows of `pound design' have: S1 needs a polynomial that fits; for rows of `pound design' use `pound indices STUDY.json Y.csv'") \
 	X(POUND_GIVEN_SERIAL,                                                             \
-	  "successive samples are correlated, as in a Markov chain: intervals are too narrow")
+	  "successive samples are correlated: if they are of a Markov chain or a time series, intervals are too narrow; if their lines were sorted, intervals are valid") \
+	X(POUND_GIVEN_REPLICATES,                                                         \
+	  "rows with the same values of all inputs are replicates of one sample: their mean counts once, however many they are") \
+	X(POUND_GIVEN_FACTORIAL,                                                          \
+	  "the samples are a complete factorial design: indices are those of its levels, all equally likely")
 
 /* Notes on the indices of an output. */
 #define POUND_GIVEN_NOTES(X)                                                          \
 	X(POUND_GIVEN_CONSTANT,                                                           \
 	  "the output is the same for every sample, so it has no indices")                \
+	X(POUND_GIVEN_ALL_NOISE,                                                          \
+	  "the variance of the output is not larger than that of its noise, so it has no indices: use more replicates") \
 	X(POUND_GIVEN_UNEXPLAINED,                                                        \
 	  "ST and S2 cannot be estimated: the cross-validated R2 of the polynomial is below 0.9; use more samples, or run your model on the rows of `pound design'") \
 	X(POUND_GIVEN_FIRST_UNKNOWN,                                                      \
 	  "S1 cannot be estimated: no polynomial fits, and the samples are not random")   \
 	X(POUND_GIVEN_FEW_DECIDE,                                                         \
-	  "fewer than 5 samples dominate the variance, so intervals may be too narrow: use more samples")
+	  "few samples hold most of the variance, so intervals may be too narrow: use more samples, or indices of the logarithm of the output")
 // clang-format on
 
 #define X(name, text) name,
@@ -54,22 +67,34 @@ struct pound_given_checks {
 
 struct pound_given_indices {
 	double mean, variance;
-	double explained;  /* cross-validated R2 of the polynomial; NAN: none was fitted */
-	int degree, terms; /* of the polynomial */
-	unsigned notes;    /* bits 1 << enum pound_given_note */
+	double noise_share; /* fraction of the variance due to the noise; NAN: not known */
+	double explained;   /* cross-validated R2 of the polynomial; NAN: none was fitted */
+	int degree, terms;  /* of the polynomial */
+	unsigned notes;     /* bits 1 << enum pound_given_note */
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX]; /* (n_inputs) each */
 	int n_second;                                                           /* 0: cannot be estimated */
 	struct pound_set_index second[POUND_PAIRS_MAX];                         /* (n_second) */
 	struct pound_curve curves[POUND_INPUTS_MAX];                            /* (n_inputs) */
 };
 
-/* Sets the distributions of the inputs; values: their memory  (2 x n_inputs x n_rows); order: scratch  (n_rows) */
-void pound_given_inputs(struct pound_given *given, double *values, size_t *order);
+/* Joins rows with the same values of all inputs, if they are replicates.  sample: of each row  (n_rows); table: scratch
+ * (pound_given_join_slots); value: number of samples */
+int pound_given_join_slots(int n_rows);
+int pound_given_join(int n_rows, int n_inputs, const double *x, int *table, int *sample);
+
+/* Sets the distributions of the inputs, and finds a factorial design; values: their memory  (2 x n_inputs x n_rows);
+ * cell: memory  (n_rows); order: scratch  (n_rows) */
+void pound_given_inputs(struct pound_given *given, double *values, int *cell, size_t *order);
 
 size_t pound_given_scratch(int n_rows, int n_inputs); /* doubles */
 void pound_given_check(const struct pound_given *given, double *scratch, struct pound_given_checks *checks);
-/* y: (n_rows), finite; scratch: as pound_given_check left it */
+/* An output: its values, finite, and if known the variance of their noise  (n_rows) each */
+struct pound_given_output {
+	const double *y, *noise; /* noise: NULL unless given->noise_known */
+};
+/* scratch: as pound_given_check left it */
 void pound_given_estimate(const struct pound_given *given, const struct pound_given_checks *checks,
-                          const double *y, double *scratch, struct pound_given_indices *indices);
+                          const struct pound_given_output *output, double *scratch,
+                          struct pound_given_indices *indices);
 
 #endif

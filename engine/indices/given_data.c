@@ -1,11 +1,12 @@
 /* given_data.c - sensitivity indices from given data.
  *
  * 1. An input is replaced by its rank among the samples, which is uniform whatever the distribution.  An input with few
- *    values, each of which occurs often, is discrete.
+ *    values, each of which occurs often, is discrete (given_repeats.c).  Rows are shuffled: their order is used for one check only.
  * 2. The samples are checked: inputs must be independent of each other (rank correlation, and chi-square of the table of
  *    two inputs), and samples near in one input may be near in the others by chance only.
  * 3. S1 is from local_regression.c or from the polynomial (given_polynomial.c), whichever has the narrower interval; ST and
- *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.
+ *    S2 are from the polynomial, with an interval that includes the unexplained variance fraction.  Those of a complete factorial
+ *    design are by the analysis of variance (given_factorial.c).
  * 4. Conditional means are the polynomial's plus its residual's (conditional_mean.c). */
 #include "engine/given.h"
 
@@ -15,11 +16,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/indices/given_factorial.h"
 #include "engine/indices/given_polynomial.h"
 #include "engine/indices/indices.h"
+#include "engine/numeric/random.h"
 
 enum {
-	ROWS_PER_VALUE = 5, // of an input with few values, on average
 	CELLS_MAX = 8,      // per side, of the table of two inputs
 	ROWS_PER_CELL = 10, // on average
 	LAGS = 10,          // neighbors checked
@@ -29,60 +31,19 @@ enum {
 // limits of the checks in standard errors: with hundreds (thousands) of normal deviates, 1 % of sample sets fail by chance
 static const double DEPENDENT = 4.0, ARRANGED = 5.0;
 static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
-
-/* ---- the distributions ---- */
-
-/* Row of the discrete distribution. */
-static int discrete_row(void)
-{
-	int row = 0;
-	while (!pound_distribution_steps(row))
-		row++;
-	return row;
-}
-
-/* Empirical distributions: each value with its frequency.
- *
- * Given    given      n_rows, n_inputs, x, inputs with names
- * Returns  inputs     distributions, which point into values
- * Memory   values     (2 x n_inputs x n_rows)
- *          order      (n_rows)
- *
- * Test     unit_given_data: an_input_of_few_values_is_discrete
- */
-void pound_given_inputs(struct pound_given *given, double *values, size_t *order)
-{
-	const int n = given->n_rows, d = given->n_inputs;
-	for (int j = 0; j < d; j++) {
-		double *value = values + (size_t)j * 2 * n, *weight = value + n;
-		int distinct = 0;
-		gsl_sort_index(order, given->x + j, (size_t)d, (size_t)n);
-		for (int k = 0; k < n; k++) {
-			const double x = given->x[order[k] * (size_t)d + j];
-			if (distinct == 0 || x != value[distinct - 1]) {
-				value[distinct] = x;
-				weight[distinct++] = 0.0;
-			}
-			weight[distinct - 1]++;
-		}
-		// few samples with few repeated values: a continuous input; all n values are listed, so that it has no levels
-		if (distinct <= POUND_CURVE && n < ROWS_PER_VALUE * distinct)
-			for (distinct = 0; distinct < n; distinct++) {
-				value[distinct] = given->x[order[distinct] * (size_t)d + j];
-				weight[distinct] = 1.0;
-			}
-		given->inputs[j].distribution = (struct pound_distribution){
-		    .type = discrete_row(), .n_values = distinct, .values = value, .weights = weight};
-	}
-}
+// coverage of S1 by the effective rows of the variance, n / kurtosis: engine/indices/statistics.md
+static const double ROWS_BEHIND = 25.0, KURTOSIS_MOST = 20.0;
 
 /* ---- the scratch ---- */
 
+/* Rows are shuffled, so that neither the samples of a fold nor the neighbors among equal values depend on the order of the lines. */
 struct space {
-	double *u;         /* (n_rows x PLACES x n_inputs) */
-	double *y, *zeros; /* (n_rows) each */
-	int64_t *row;      /* (n_rows) */
-	size_t *order;     /* (n_rows) */
+	double *u;     /* (n_rows x PLACES x n_inputs) */
+	double *y;     /* output less its mean  (n_rows) */
+	double *noise; /* standard deviation of its noise, 0: not known  (n_rows) */
+	int64_t *row;  /* (n_rows) */
+	size_t *order; /* (n_rows) */
+	size_t *place; /* of each given row, after the shuffle  (n_rows) */
 	double *rest;
 };
 
@@ -90,23 +51,42 @@ static size_t carve(struct space *s, double *scratch, int n_rows, int n_inputs)
 {
 	const size_t n = n_rows;
 	const struct pound_sample_values shape = {.n_rows = n_rows, .n_inputs = n_inputs, .n_signals = 1};
-	const size_t sizes[] = {pound_local_regression_scratch(&shape), pound_conditional_scratch(n_rows)};
+	const size_t sizes[] = {pound_local_regression_scratch(&shape), pound_conditional_scratch(n_rows),
+	                        pound_factorial_scratch(n_rows)};
 	const size_t polynomial = pound_polynomial_scratch(n_rows, n_inputs);
+	size_t most = 0;
+	for (size_t k = 0; k < sizeof sizes / sizeof sizes[0]; k++)
+		most = sizes[k] > most ? sizes[k] : most;
 	if (s) {
 		s->u = scratch;
 		s->y = s->u + n * PLACES * n_inputs;
-		s->zeros = s->y + n;
-		s->row = (int64_t *)(s->zeros + n);
+		s->noise = s->y + n;
+		s->row = (int64_t *)(s->noise + n);
 		s->order = (size_t *)(s->row + n);
-		s->rest = scratch + n * PLACES * n_inputs + 4 * n;
+		s->place = s->order + n;
+		s->rest = scratch + n * PLACES * n_inputs + 5 * n;
 	}
 	// the fit is kept at the start, the other steps use the memory behind it
-	return n * PLACES * n_inputs + 4 * n + polynomial + (sizes[0] > sizes[1] ? sizes[0] : sizes[1]);
+	return n * PLACES * n_inputs + 5 * n + polynomial + most;
 }
 
 size_t pound_given_scratch(int n_rows, int n_inputs)
 {
 	return carve(NULL, NULL, n_rows, n_inputs);
+}
+
+/* A permutation of the rows, always the same for the same number (Fisher and Yates). */
+static void shuffle(const struct space *s, int n)
+{
+	const struct pound_stream stream = {.what = POUND_STREAM_SHUFFLE};
+	for (int i = 0; i < n; i++)
+		s->place[i] = (size_t)i;
+	for (int i = n - 1; i > 0; i--) {
+		const uint32_t k = pound_random_below(stream, (uint32_t)i, (uint32_t)i + 1u);
+		const size_t place = s->place[i];
+		s->place[i] = s->place[k];
+		s->place[k] = place;
+	}
 }
 
 /* Probabilities of the samples: ranks in (0, 1), mid-ranks for ties. */
@@ -121,7 +101,7 @@ static void places_fill(const struct pound_given *given, const struct space *s)
 				end++;
 			for (int k = first; k < end; k++)
 				for (int matrix = 0; matrix < PLACES; matrix++)
-					s->u[(s->order[k] * PLACES + matrix) * (size_t)d + j] = 0.5 * (first + end) / n;
+					s->u[(s->place[s->order[k]] * PLACES + matrix) * (size_t)d + j] = 0.5 * (first + end) / n;
 		}
 	}
 }
@@ -148,20 +128,21 @@ static double correlation(const struct space *s, int n, int d, int i, int j)
 
 /* Whether the table of two inputs' ranks is filled unevenly.
  *
+ * Given    correlated  variance of a count over that of independent rows
  * Returns  value       Pearson's chi-square exceeds DEPENDENT standard normal deviates
  *
  * Source   Wilson and Hilferty 1931, Proc. Natl. Acad. Sci. 17, 684: (chi2 / f)^(1/3) is normal with mean 1 - 2/(9 f) and
  *          variance 2/(9 f); here chi2 / f is compared with the cube of the limit
  */
-static bool uneven(const struct space *s, int n, int d, int i, int j)
+static bool uneven(const struct space *s, int n, int d, const int pair[2], double correlated)
 {
 	int side = 2, table[CELLS_MAX][CELLS_MAX] = {0}, across[CELLS_MAX] = {0}, down[CELLS_MAX] = {0}, rows = 0,
 	    columns = 0;
 	while (side < CELLS_MAX && (side + 1) * (side + 1) * ROWS_PER_CELL <= n)
 		side++;
 	for (int k = 0; k < n; k++) {
-		const int p = (int)((rank_of(s, d, k, i) + 0.5) * side),
-		          q = (int)((rank_of(s, d, k, j) + 0.5) * side);
+		const int p = (int)((rank_of(s, d, k, pair[0]) + 0.5) * side),
+		          q = (int)((rank_of(s, d, k, pair[1]) + 0.5) * side);
 		table[p][q]++;
 		across[p]++;
 		down[q]++;
@@ -180,7 +161,7 @@ static bool uneven(const struct space *s, int n, int d, int i, int j)
 	if (freedom < 1.0)
 		return false;
 	const double v = 2.0 / (9.0 * freedom), root = 1.0 - v + DEPENDENT * sqrt(v);
-	return chi / freedom > root * root * root;
+	return chi / correlated / freedom > root * root * root;
 }
 
 /* Sum of the products of an input's ranks at samples `lag` apart in the order. */
@@ -215,7 +196,7 @@ static bool arranged_by_any(const struct pound_given *given, const struct space 
 		// a discrete input uses means at its values, not neighbors
 		if (pound_conditional_levels(&given->inputs[i].distribution) > 0)
 			continue;
-		gsl_sort_index(s->order, given->x + i, (size_t)d, (size_t)n);
+		gsl_sort_index(s->order, s->u + i, (size_t)d * PLACES, (size_t)n);
 		for (int j = 0; j < d; j++)
 			if (j != i && arranged(s, n, d, j))
 				return true;
@@ -223,21 +204,27 @@ static bool arranged_by_any(const struct pound_given *given, const struct space 
 	return false;
 }
 
-/* Whether successive samples are correlated. */
-static bool serial(const struct space *s, int n, int d)
+/* Variance of a mean product of an input's ranks with those of a similar input, over that of independent rows; 1 if successive
+ * rows are not correlated.
+ *
+ * Source   Bartlett 1946, J. R. Stat. Soc. Suppl. 8, 27: 1 + 2 sum of products of autocorrelations
+ */
+static double correlated(const struct space *s, int n, int d, int j)
 {
-	for (int k = 0; k < n; k++)
-		s->order[k] = (size_t)k;
-	for (int j = 0; j < d; j++) {
-		double square = 0.0, sum = 0.0;
-		for (int k = 0; k < n; k++) {
-			square += rank_of(s, d, k, j) * rank_of(s, d, k, j);
-			sum += k > 0 ? rank_of(s, d, k, j) * rank_of(s, d, k - 1, j) : 0.0;
-		}
-		if (sum > ARRANGED / sqrt(n) * square)
-			return true;
+	double square = 0.0, sum = 1.0;
+	for (int k = 0; k < n; k++) {
+		s->order[k] = s->place[k];
+		square += rank_of(s, d, k, j) * rank_of(s, d, k, j);
 	}
-	return false;
+	if (lagged(s, n, d, j, 1) <= ARRANGED / sqrt(n) * square)
+		return 1.0;
+	for (int lag = 1; lag < n / 2; lag++) {
+		const double r = lagged(s, n, d, j, lag) / square;
+		if (r < 2.0 / sqrt(n))
+			break;
+		sum += 2.0 * r * r;
+	}
+	return sum;
 }
 
 /* Checks the samples.
@@ -254,14 +241,22 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 {
 	const int n = given->n_rows, d = given->n_inputs;
 	struct space s;
-	bool dependent = false;
+	bool dependent = false, serial = false, noisy = !given->noise_known && given->replicates < 2;
+	double variance[POUND_INPUTS_MAX];
 	carve(&s, scratch, n, d);
+	shuffle(&s, n);
 	places_fill(given, &s);
-	*checks = (struct pound_given_checks){.pair = {-1, -1}, .notes = 1u << POUND_GIVEN_NOISE};
+	*checks = (struct pound_given_checks){.pair = {-1, -1}};
+	// the order of the lines of a design or of a sorted table says nothing
+	for (int j = 0; j < d; j++) {
+		variance[j] = given->sorted || given->replicates ? 1.0 : correlated(&s, n, d, j);
+		serial |= variance[j] > 1.0;
+	}
 	for (int i = 0; i < d; i++)
 		for (int j = i + 1; j < d; j++) {
-			const double r = correlation(&s, n, d, i, j);
-			const bool independent = fabs(r) * sqrt(n - 1.0) <= DEPENDENT && !uneven(&s, n, d, i, j);
+			const double r = correlation(&s, n, d, i, j), more = sqrt(variance[i] * variance[j]);
+			const bool independent =
+			    fabs(r) * sqrt((n - 1.0) / more) <= DEPENDENT && !uneven(&s, n, d, (const int[]){i, j}, more);
 			// the first dependent pair, or without one the most correlated pair
 			if (checks->pair[0] < 0 ||
 			    (!dependent && (!independent || fabs(r) > fabs(checks->correlation)))) {
@@ -270,9 +265,16 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 			}
 			dependent |= !independent;
 		}
-	checks->notes |= dependent ? 1u << POUND_GIVEN_DEPENDENT : 0u;
-	checks->notes |= arranged_by_any(given, &s) ? 1u << POUND_GIVEN_ARRANGED : 0u;
-	checks->notes |= serial(&s, n, d) ? 1u << POUND_GIVEN_SERIAL : 0u;
+	const bool said[POUND_GIVEN_N_SAMPLES_NOTES] = {
+	    [POUND_GIVEN_NOISE] = noisy,
+	    [POUND_GIVEN_DEPENDENT] = dependent,
+	    [POUND_GIVEN_ARRANGED] = given->replicates == 0 && arranged_by_any(given, &s),
+	    [POUND_GIVEN_SERIAL] = serial,
+	    [POUND_GIVEN_REPLICATES] = given->joined,
+	    [POUND_GIVEN_FACTORIAL] = given->replicates > 0,
+	};
+	for (int k = 0; k < POUND_GIVEN_N_SAMPLES_NOTES; k++)
+		checks->notes |= (unsigned)said[k] << k;
 }
 
 /* ---- the indices ---- */
@@ -301,32 +303,33 @@ static void rows_init(struct pound_rows *rows, const struct pound_given *given, 
 	                            .scatter = {{0, 0}, s->row},
 	                            .y = s->y,
 	                            .plain = s->y,
-	                            .deviation = s->zeros,
+	                            .deviation = s->noise,
 	                            .inputs = given->inputs};
 }
 
 /* The outputs less their mean, summed relative to the first output, so that equal outputs become zeros. */
-static bool centre(const struct pound_given *given, const double *y, const struct space *s,
-                   struct pound_given_indices *indices)
+static bool centre(const struct pound_given *given, const struct pound_given_output *output,
+                   const struct space *s, struct pound_given_indices *indices)
 {
 	const int n = given->n_rows;
-	double sum = 0.0, squares = 0.0, fourths = 0.0, largest = 0.0;
+	const double *y = output->y;
+	double sum = 0.0, squares = 0.0, noise = 0.0, largest = 0.0;
 	for (int i = 0; i < n; i++) {
 		sum += y[i] - y[0];
 		largest = fmax(largest, fabs(y[i]));
 		s->row[i] = i;
-		s->zeros[i] = 0.0;
+		s->noise[s->place[i]] = output->noise ? sqrt(output->noise[i]) : 0.0;
+		noise += output->noise ? output->noise[i] / n : NAN;
 	}
 	indices->mean = y[0] + sum / n;
 	for (int i = 0; i < n; i++) {
-		s->y[i] = y[i] - indices->mean;
-		const double square = s->y[i] * s->y[i];
-		squares += square;
-		fourths += square * square;
+		const double off = y[i] - indices->mean;
+		s->y[s->place[i]] = off;
+		squares += off * off;
 	}
-	const double rounding = 3.0 * DBL_EPSILON * largest, few = 5.0;
+	const double rounding = 3.0 * DBL_EPSILON * largest;
 	indices->variance = squares / (n - 1.0);
-	indices->notes |= squares * squares < few * fourths ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+	indices->noise_share = noise / indices->variance;
 	return squares / n > rounding * rounding;
 }
 
@@ -336,7 +339,7 @@ static void first_fill(const struct pound_rows *rows, const struct space *s, con
 {
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
-	pound_local_regression_first(rows, s->u, POUND_NOISE_KEPT, s->rest, local);
+	pound_local_regression_first(rows, s->u, POUND_NOISE_REMOVED, s->rest, local);
 	for (int j = 0; j < rows->n_inputs; j++) {
 		// a discrete input uses means at its values, not neighbors
 		const bool known = neighbors || pound_rows_levels(rows, j) > 0;
@@ -384,47 +387,85 @@ static void curves_fill(const struct pound_rows *rows, const struct space *s,
 	}
 }
 
+/* No index, with a note why. */
+static void nothing_fill(enum pound_given_note why, int n_inputs, struct pound_given_indices *indices)
+{
+	indices->notes = 1u << why;
+	for (int j = 0; j < n_inputs; j++) {
+		indices->first[j] = indices->total[j] = UNKNOWN;
+		for (int k = 0; k < POUND_CURVE; k++)
+			indices->curves[j].mean[k] = UNKNOWN;
+	}
+}
+
+/* Whether the variance may be that of the noise alone: within twice its standard error. */
+static bool noise_alone(const struct pound_given_indices *indices, int n_rows)
+{
+	return indices->noise_share > 0.0 && 1.0 - indices->noise_share < 2.0 * sqrt(2.0 / n_rows);
+}
+
+/* Whether so few rows hold most of the variance that intervals may be too narrow. */
+static bool few_decide(const struct space *s, int n)
+{
+	double squares = 0.0, fourths = 0.0;
+	for (int i = 0; i < n; i++) {
+		const double square = s->y[i] * s->y[i];
+		squares += square;
+		fourths += square * square;
+	}
+	return squares * squares < fmin(ROWS_BEHIND, n / KURTOSIS_MOST) * fourths;
+}
+
 /* The indices of an output that the samples can estimate.
  *
  * Given    given      -
  *          checks     -                      of given
- *          y          (n_rows)
+ *          output     -
  *          scratch    (pound_given_scratch)  as pound_given_check left it
  * Returns  indices    -                      NAN, with a note, for indices that cannot be estimated
  *
- * Valid    Independent draws, or one Latin hypercube, of independent inputs; dependent inputs: only S1 and conditional means
- * Test     unit_given_data
+ * Valid    Independent draws, or one Latin hypercube, of independent inputs; dependent inputs: only S1 and conditional means; a
+ *          complete factorial design
+ * Test     unit_given_data, unit_given_repeats
  */
 void pound_given_estimate(const struct pound_given *given, const struct pound_given_checks *checks,
-                          const double *y, double *scratch, struct pound_given_indices *indices)
+                          const struct pound_given_output *output, double *scratch,
+                          struct pound_given_indices *indices)
 {
 	const bool independent = !(checks->notes >> POUND_GIVEN_DEPENDENT & 1),
-	           neighbors = !(checks->notes >> POUND_GIVEN_ARRANGED & 1);
+	           neighbors = !(checks->notes >> POUND_GIVEN_ARRANGED & 1), factorial = given->replicates > 0,
+	           by_factorial = factorial && pound_factorial_noise_known(given);
 	struct space s;
 	struct pound_rows rows;
 	struct pound_polynomial fitted = {.n_rows = given->n_rows, .n_inputs = given->n_inputs};
 	carve(&s, scratch, given->n_rows, given->n_inputs);
 	rows_init(&rows, given, &s);
 	*indices = (struct pound_given_indices){.explained = NAN};
-	if (!centre(given, y, &s, indices)) {
-		indices->notes = 1u << POUND_GIVEN_CONSTANT;
-		for (int j = 0; j < given->n_inputs; j++) {
-			indices->first[j] = indices->total[j] = UNKNOWN;
-			for (int k = 0; k < POUND_CURVE; k++)
-				indices->curves[j].mean[k] = UNKNOWN;
-		}
+	if (!centre(given, output, &s, indices)) {
+		nothing_fill(POUND_GIVEN_CONSTANT, given->n_inputs, indices);
 		return;
 	}
-	if (independent) {
+	if (noise_alone(indices, given->n_rows) ||
+	    (by_factorial && !pound_factorial_indices(given, output, s.rest, indices))) {
+		nothing_fill(POUND_GIVEN_ALL_NOISE, given->n_inputs, indices);
+		return;
+	}
+	if (independent && !by_factorial) {
 		fitted.u = s.u;
+		fitted.noise = s.noise;
 		pound_polynomial_fit(&fitted, s.y, s.rest);
 		s.rest += pound_polynomial_scratch(given->n_rows, given->n_inputs);
 		indices->explained = fitted.explained;
 		indices->degree = fitted.chosen;
 		indices->terms = fitted.terms_of[fitted.chosen];
 	}
-	const struct pound_polynomial *p = independent ? &fitted : NULL;
-	first_fill(&rows, &s, p, neighbors, indices);
-	others_fill(given, p, indices);
+	const struct pound_polynomial *p = independent && !by_factorial ? &fitted : NULL;
+	if (!by_factorial)
+		others_fill(given, p, indices);
+	if (!factorial) {
+		first_fill(&rows, &s, p, neighbors, indices);
+		indices->notes |= few_decide(&s, given->n_rows) ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+	} else if (!by_factorial)
+		pound_factorial_indices(given, output, s.rest, indices);
 	curves_fill(&rows, &s, p, indices);
 }

@@ -8,9 +8,11 @@
  *    predicts best is chosen; its R2 of the predictions is the cross-validated R2.
  * 3. For independent inputs the squared coefficients add up to the variance and contribute to the indices of the term's
  *    inputs; a square is too large by the coefficient's own variance, which is subtracted.
- * 4. Intervals are Student's, from the fits without one fold each. */
+ * 4. Intervals are Student's, from the fits without one fold each.  Each fit's indices are those of the distribution of its own
+ *    samples: most of the error of a polynomial that fits well is that of the moments of the samples. */
 #include "engine/indices/given_polynomial.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -131,8 +133,8 @@ struct space {
 	double *factor;  /* (terms x terms) */
 	double *
 	    coefficients; /* of the fits without a fold each, then of all, for each degree  ((FOLDS + 1) x (degree + 1) x terms) */
-	double *fit;                              /* (n_rows) */
-	double sum[FOLDS + 1], square[FOLDS + 1]; /* of the outputs */
+	double *fit;             /* (n_rows) */
+	double noise[FOLDS + 1]; /* sum of the noise variances */
 	int n[FOLDS + 1];
 };
 
@@ -173,8 +175,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 	double term[TERMS_MAX];
 	memset(s->gram, 0, sizeof *s->gram * (FOLDS + 1) * n * n);
 	memset(s->product, 0, sizeof *s->product * (FOLDS + 1) * n);
-	memset(s->sum, 0, sizeof s->sum);
-	memset(s->square, 0, sizeof s->square);
+	memset(s->noise, 0, sizeof s->noise);
 	memset(s->n, 0, sizeof s->n);
 	for (int i = 0; i < p->n_rows; i++) {
 		const int fold = i % FOLDS;
@@ -185,8 +186,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 				gram[k * n + l] += term[k] * term[l];
 			product[k] += term[k] * y[i];
 		}
-		s->sum[fold] += y[i];
-		s->square[fold] += y[i] * y[i];
+		s->noise[fold] += p->noise[i] * p->noise[i];
 		s->n[fold]++;
 	}
 	for (int fold = 0; fold < FOLDS; fold++) {
@@ -194,8 +194,7 @@ static void sums_fill(const struct pound_polynomial *p, const double *y, struct 
 			s->gram[FOLDS * n * n + k] += s->gram[(size_t)fold * n * n + k];
 		for (size_t k = 0; k < n; k++)
 			s->product[FOLDS * n + k] += s->product[(size_t)fold * n + k];
-		s->sum[FOLDS] += s->sum[fold];
-		s->square[FOLDS] += s->square[fold];
+		s->noise[FOLDS] += s->noise[fold];
 		s->n[FOLDS] += s->n[fold];
 	}
 }
@@ -285,20 +284,78 @@ static int n_values(const struct pound_polynomial *p)
 	return 2 * p->n_inputs + p->n_inputs * (p->n_inputs - 1) / 2;
 }
 
+/* An input's polynomials p_k as sums of polynomials q_l that are orthonormal over the samples without a fold:
+ *   p_k = sum over l <= k of factor[k][l] q_l,  the Cholesky factor of the means of p_k p_l over these samples */
+struct axis_change {
+	double factor[DEGREE_MAX + 1][DEGREE_MAX + 1];
+};
+
+static void change_fill(const struct pound_polynomial *p, const struct space *s, int fold, int input,
+                        struct axis_change *change)
+{
+	const size_t n = p->terms_of[p->degree];
+	const double *all = s->gram + FOLDS * n * n, *of = s->gram + (size_t)fold * n * n;
+	size_t term[DEGREE_MAX + 1] = {0}; // the terms of this input alone
+	int most = 0;
+	for (size_t t = 1; t < n; t++) {
+		int elsewhere = 0;
+		for (int j = 0; j < p->n_inputs; j++)
+			elsewhere += j == input ? 0 : p->exponent[t][j];
+		if (elsewhere == 0) {
+			most = p->exponent[t][input];
+			term[most] = t;
+		}
+	}
+	memset(change, 0, sizeof *change);
+	for (int k = 0; k <= most; k++)
+		for (int l = 0; l <= k; l++) {
+			const size_t at = term[l] * n + term[k]; // upper triangle
+			double sum = (all[at] - of[at]) / (s->n[FOLDS] - s->n[fold]);
+			for (int m = 0; m < l; m++)
+				sum -= change->factor[k][m] * change->factor[l][m];
+			change->factor[k][l] = l < k ? sum / change->factor[l][l] : sqrt(fmax(sum, DBL_MIN));
+		}
+}
+
+/* Coefficients of the fit without a fold, for polynomials that are orthonormal over its samples, so that the indices are those of the
+ * distribution of these samples. */
+static void coefficients_change(const struct pound_polynomial *p, const struct space *s, int fold,
+                                double *changed)
+{
+	const int used = p->terms_of[p->chosen], d = p->n_inputs;
+	const double *coefficients = coefficients_of(p, s, fold, p->chosen);
+	struct axis_change change[POUND_INPUTS_MAX];
+	memcpy(changed, coefficients, sizeof *changed * (size_t)used);
+	if (fold == FOLDS)
+		return;
+	for (int j = 0; j < d; j++)
+		change_fill(p, s, fold, j, &change[j]);
+	memset(changed, 0, sizeof *changed * (size_t)used);
+	for (int from = 0; from < used; from++)
+		for (int to = 0; to <= from; to++) {
+			double factor = coefficients[from];
+			for (int j = 0; j < d && factor != 0.0; j++)
+				factor *= change[j].factor[p->exponent[from][j]][p->exponent[to][j]];
+			changed[to] += factor;
+		}
+}
+
 /* First-order, total and second-order indices of the fit without a fold.
  *
  * Given    noise       variance of an output about the fit
  * Returns  value       (n_values)
+ *
+ * The variance is the sum of the squared coefficients and the variance about the fit: its error has much in common with the
+ * error of the coefficients, unlike the error of the variance of the samples.
  */
 static void values_of(const struct pound_polynomial *p, const struct space *s, int fold, double noise,
                       double *value)
 {
 	const int n = p->terms_of[p->degree], used = p->terms_of[p->chosen], d = p->n_inputs;
-	const double *coefficients = coefficients_of(p, s, fold, p->chosen);
 	const double count = s->n[FOLDS] - (fold < FOLDS ? s->n[fold] : 0),
-	             sum = s->sum[FOLDS] - (fold < FOLDS ? s->sum[fold] : 0.0),
-	             squares = s->square[FOLDS] - (fold < FOLDS ? s->square[fold] : 0.0),
-	             variance = (squares - sum * sum / count) / (count - 1.0);
+	             of_noise = (s->noise[FOLDS] - (fold < FOLDS ? s->noise[fold] : 0.0)) / count;
+	double coefficients[TERMS_MAX], variance = fmax(0.0, noise - of_noise);
+	coefficients_change(p, s, fold, coefficients);
 	memset(value, 0, sizeof *value * (size_t)n_values(p));
 	factor_fill(p, s, fold);
 	for (int t = 1; t < used; t++) {
@@ -308,7 +365,8 @@ static void values_of(const struct pound_polynomial *p, const struct space *s, i
 		solve_forward(s->factor, n, used, unit);
 		for (int k = t; k < used; k++)
 			own += unit[k] * unit[k];
-		const double part = (coefficients[t] * coefficients[t] - noise * own) / variance;
+		const double part = coefficients[t] * coefficients[t] - noise * own;
+		variance += part;
 		for (int j = 0; j < d; j++) {
 			if (p->exponent[t][j] == 0)
 				continue;
@@ -323,6 +381,8 @@ static void values_of(const struct pound_polynomial *p, const struct space *s, i
 		if (inputs == 2)
 			value[2 * d + first * (2 * d - first - 1) / 2 + last - first - 1] += part;
 	}
+	for (int v = 0; v < n_values(p); v++)
+		value[v] /= variance;
 }
 
 static void values_fill(struct pound_polynomial *p, const struct space *s, double noise)
@@ -346,7 +406,7 @@ static void values_fill(struct pound_polynomial *p, const struct space *s, doubl
 
 /* Fits the polynomial that predicts best, and computes its indices.
  *
- * Given    p           n_rows, n_inputs, u           u in (0, 1)
+ * Given    p           n_rows, n_inputs, u, noise    u in (0, 1); rows in no order
  *          y           (n_rows)                      less their mean
  * Returns  p           all other members
  * Memory   scratch     (pound_polynomial_scratch)    held by p
@@ -375,7 +435,8 @@ void pound_polynomial_fit(struct pound_polynomial *p, const double *y, double *s
 	for (int degree = 1; degree <= p->degree; degree++)
 		if (error[degree] < error[p->chosen])
 			p->chosen = degree;
-	p->explained = 1.0 - error[p->chosen] / error[0];
+	// without the noise, which no polynomial predicts
+	p->explained = 1.0 - fmax(0.0, error[p->chosen] - s.noise[FOLDS]) / (error[0] - s.noise[FOLDS]);
 	p->coefficients = coefficients_of(p, &s, FOLDS, p->chosen);
 	p->fit = s.fit;
 	predictions_fill(p, &s);

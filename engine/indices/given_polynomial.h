@@ -19,7 +19,8 @@ struct pound_polynomial_axis {
 
 struct pound_polynomial {
 	int n_rows, n_inputs;
-	const double *u; /* (n_rows x 2 x n_inputs), only the first of each pair of rows is read */
+	const double *u;     /* (n_rows x 2 x n_inputs), only the first of each pair of rows is read */
+	const double *noise; /* standard deviations of the noise of the outputs, 0: not known  (n_rows) */
 	struct pound_polynomial_axis axis[POUND_INPUTS_MAX];
 	int degree;                                    /* the largest that the samples allow */
 	int terms_of[POUND_POLYNOMIAL_DEGREE_MAX + 1]; /* terms up to each degree, lower ones first */

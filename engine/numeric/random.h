@@ -12,7 +12,13 @@
 #include <Random123/philox.h>
 
 /* purpose of a stream  < 2^8 */
-enum { POUND_STREAM_NOISE = 1, POUND_STREAM_DESIGN, POUND_STREAM_BOOTSTRAP, POUND_STREAM_RECORD };
+enum {
+	POUND_STREAM_NOISE = 1,
+	POUND_STREAM_DESIGN,
+	POUND_STREAM_BOOTSTRAP,
+	POUND_STREAM_RECORD,
+	POUND_STREAM_SHUFFLE
+};
 
 struct pound_stream {
 	uint64_t seed;

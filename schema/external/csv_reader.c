@@ -173,3 +173,25 @@ bool csv_is_text(struct csv *csv)
 		csv->line = 1;
 	return at == csv->end;
 }
+
+size_t csv_variance_stem(const char *name)
+{
+	static const char suffix[] = ".variance";
+	const size_t n = strlen(name), length = sizeof suffix - 1;
+	return n > length && strcmp(name + n - length, suffix) == 0 ? n - length : 0;
+}
+
+size_t csv_replicate_stem(const char *name, int *replicate)
+{
+	static const char suffix[] = ".replicate";
+	const size_t n = strlen(name), length = sizeof suffix - 1;
+	size_t end = n;
+	*replicate = 0;
+	while (end > 0 && name[end - 1] >= '0' && name[end - 1] <= '9')
+		end--;
+	if (end == n || name[end] == '0' || n - end > 4 || end <= length ||
+	    strncmp(name + end - length, suffix, length) != 0)
+		return 0;
+	*replicate = (int)strtol(name + end, NULL, 10);
+	return end - length;
+}

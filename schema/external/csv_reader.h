@@ -39,6 +39,11 @@ bool csv_number(const struct csv *csv, double *value);
 int csv_lines_left(const struct csv *csv); /* from the current position on, blank lines included */
 bool csv_blank(const char *at, const char *end);
 
+/* The length of NAME in a column's name NAME.variance, or NAME.replicateK with K from 1 without leading zeros; 0: another name,
+ * and replicate 0. */
+size_t csv_variance_stem(const char *name);
+size_t csv_replicate_stem(const char *name, int *replicate);
+
 /* Adds a problem of the current line; `column` may be NULL. */
 void csv_complain(const struct csv *csv, const char *column, const char *what);
 void csv_name_check(const struct csv *csv, int c, int same);

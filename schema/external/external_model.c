@@ -69,7 +69,7 @@ struct column {
 	char *name;
 	enum role role;
 	int index;     /* index of the output or input */
-	int replicate; /* from 0 */
+	int replicate; /* from 1; 0: not a replicate */
 	struct csv_fault faults[N_FAULTS];
 };
 
@@ -80,8 +80,6 @@ struct outputs {
 	char **names;           /* of the outputs  (study.n_outputs) */
 	char **stems; /* names that are not column names, to be freed; NULL: it is a column name  (n_columns) */
 };
-
-static const char VARIANCE[] = ".variance", REPLICATE[] = ".replicate";
 
 /* Whether a name in a header is the name of an input, with or without the apostrophe of writer_cell. */
 static bool is_input(const struct pound_input *input, const char *name)
@@ -98,30 +96,14 @@ static int column_named(const struct outputs *outputs, int n, const char *name, 
 	return -1;
 }
 
-/* The length of NAME in a name NAME.replicateK, K from 1 without leading zeros; 0: another name. */
-static size_t replicate_stem(const char *name, int *replicate)
-{
-	const size_t n = strlen(name), digits = sizeof REPLICATE - 1;
-	size_t end = n;
-	while (end > 0 && name[end - 1] >= '0' && name[end - 1] <= '9')
-		end--;
-	if (end == n || name[end] == '0' || n - end > 4 || end <= digits ||
-	    strncmp(name + end - digits, REPLICATE, digits) != 0)
-		return 0;
-	*replicate = (int)strtol(name + end, NULL, 10) - 1;
-	return end - digits;
-}
-
 static void column_role(const struct outputs *outputs, struct column *column)
 {
-	size_t n = strlen(column->name), suffix = sizeof VARIANCE - 1;
 	column->role = ROLE_OUTPUT;
 	if (strcmp(column->name, "row") == 0 || strcmp(column->name, "sample") == 0)
 		column->role = ROLE_OTHER;
-	if (n > suffix && strcmp(column->name + n - suffix, VARIANCE) == 0)
+	if (csv_variance_stem(column->name) > 0)
 		column->role = ROLE_VARIANCE;
-	const size_t stem = replicate_stem(column->name, &column->replicate);
-	if (stem > 0)
+	if (csv_replicate_stem(column->name, &column->replicate) > 0)
 		column->role = ROLE_REPLICATE;
 	for (int j = 0; j < outputs->study.n_inputs; j++)
 		if (is_input(&outputs->study.inputs[j], column->name)) {
@@ -142,7 +124,7 @@ static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outpu
 		struct column *column = &outputs->columns[c];
 		if (column->role != ROLE_REPLICATE)
 			continue;
-		const size_t stem = replicate_stem(column->name, &column->replicate);
+		const size_t stem = csv_replicate_stem(column->name, &column->replicate);
 		int o = single;
 		while (o < n_outputs &&
 		       (strlen(outputs->names[o]) != stem || strncmp(outputs->names[o], column->name, stem) != 0))
@@ -151,7 +133,7 @@ static int replicates_join(struct outputs *outputs, struct csv *csv, int n_outpu
 		    !(outputs->names[n_outputs++] = outputs->stems[o] = strndup(column->name, stem)))
 			csv->problems->status = PROBLEMS_NOMEM;
 		column->index = o;
-		most = column->replicate + 1 > most ? column->replicate + 1 : most;
+		most = column->replicate > most ? column->replicate : most;
 		n++;
 	}
 	if (n == 0 || csv->problems->status == PROBLEMS_NOMEM)
@@ -186,8 +168,7 @@ static void columns_join(struct outputs *outputs, struct csv *csv)
 		struct column *column = &outputs->columns[c];
 		if (column->role != ROLE_VARIANCE)
 			continue;
-		int of = column_named(outputs, outputs->n_columns, column->name,
-		                      strlen(column->name) - (sizeof VARIANCE - 1));
+		int of = column_named(outputs, outputs->n_columns, column->name, csv_variance_stem(column->name));
 		if (of < 0 || outputs->columns[of].role != ROLE_OUTPUT)
 			csv_complain(csv, column->name, "has no matching output column");
 		else
@@ -282,7 +263,8 @@ static void cell_take(const struct outputs *outputs, struct csv *csv, struct lin
 		               "must be a decimal number, or empty or nan for a failed run, got \"%.60s\"",
 		               csv->cell);
 	} else if (column->role == ROLE_OUTPUT || column->role == ROLE_REPLICATE) {
-		line->value[column->index * values_of(outputs) + column->replicate] = number;
+		line->value[column->index * values_of(outputs) + (column->replicate ? column->replicate - 1 : 0)] =
+		    number;
 		if (fabs(number) > OUTPUT_MOST)
 			csv_fault_note(&column->faults[FAULT_RANGE], csv, "must be at most %g in magnitude, got %.60s",
 			               OUTPUT_MOST, csv->cell);

@@ -20,6 +20,8 @@ struct given_table {
 void given_table_read(struct given_table *table, enum given_role role, const char *csv, size_t length,
                       struct problems *problems);
 void given_table_free(struct given_table *table);
+/* The column with a name among the first n; -1: none. */
+int given_column(const struct given_table *table, int n, const char *name);
 
 /* The indices of the outputs, as JSON on the heap; NULL: failed, see problems->status. */
 char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,

@@ -99,9 +99,16 @@ static bool choice_taken(const struct figure_row *row, const struct figure_choic
 	return true;
 }
 
+/* The kind of study whose figures a result has: indices of given data have the form of a sensitivity study's. */
+static const char *kind_of(const cJSON *result)
+{
+	const char *kind = plot_text(result, "kind");
+	return strcmp(kind, "given_data") == 0 ? "sensitivity" : kind;
+}
+
 bool figure_shows(const struct figure_row *row, const cJSON *result)
 {
-	return strcmp(row->kind, plot_text(result, "kind")) == 0 && functions[row - figure_rows].has(result);
+	return strcmp(row->kind, kind_of(result)) == 0 && functions[row - figure_rows].has(result);
 }
 
 static enum figure_status out_of_memory(struct figure *figure)
@@ -132,6 +139,8 @@ static void absent(const struct figure_row *row, const cJSON *result, bool sampl
 	snprintf(why, sizeof why, "it shows studies of kind \"%s\", not \"%.40s\"", row->kind, kind);
 	if (strcmp(row->kind, kind) == 0 || strcmp(row->kind, "any") == 0)
 		snprintf(why, sizeof why, "%s", row->needs ? row->needs : "the result lacks its numbers");
+	if (strcmp(kind, "given_data") == 0)
+		snprintf(why, sizeof why, "given data do not have its numbers");
 	size_t n = (size_t)snprintf(figure->detail, sizeof figure->detail, "this result has no figure \"%s\": %s",
 	                            row->name, why);
 	for (const struct figure_row *has = figure_rows; has->name; has++)

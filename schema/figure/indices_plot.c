@@ -16,7 +16,11 @@ static const struct part {
     {"ST", "ST_low", "ST_high", "total index ST", false},
 };
 
-static const char NOISE[] = "noise of signals";
+static const char *noise_name(const struct plot *plot)
+{
+	return strcmp(plot_text(plot->result, "kind"), "given_data") == 0 ? "noise of replicates"
+	                                                                  : "noise of signals";
+}
 
 static bool drawn(const struct plot *plot, const struct part *part)
 {
@@ -51,7 +55,7 @@ static void draw_noise(struct plot *plot, const struct axis *axis, const cJSON *
 	draw_text(
 	    &plot->d,
 	    &(struct label){.x = axis->start - 8, .y = y + 4, .anchor = 'e', .ink = INK_MUTED, .fit = names},
-	    NOISE);
+	    noise_name(plot));
 	if (!isfinite(share)) {
 		draw_text(&plot->d, &(struct label){.x = zero + 6, .y = y + 4, .ink = INK_MUTED}, "no value");
 		return;
@@ -92,7 +96,7 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 	int n = cJSON_GetArraySize(inputs);
 	char title[PLOT_TEXT];
 	struct ticks ticks;
-	double names = draw_width(NOISE, DRAW_TEXT_SIZE);
+	double names = draw_width(noise_name(plot), DRAW_TEXT_SIZE);
 	cJSON_ArrayForEach(input, inputs) names =
 	    fmax(names, draw_width(plot_text(input, "name"), DRAW_TEXT_SIZE));
 	names = fmin(names, 0.38 * panel->width);

@@ -125,6 +125,9 @@ static void put_head(struct report *report)
 	put_member(report, result, "kind", "kind of study");
 	put_member(report, plot_member(result, "design"), "method", "design");
 	put_member(report, plot_member(result, "design"), "rows", "rows");
+	put_member(report, plot_member(result, "given"), "samples", "given samples");
+	put_member(report, plot_member(result, "given"), "samples_missing",
+	           "samples left out, a number is missing");
 	// left out if no run has pounding: no output needs it, or there is no contact
 	const cJSON *work = plot_member(result, "work"), *pounding = plot_member(work, "pounding_runs");
 	if (plot_number(pounding, "run") > 0 || plot_number(work, "never_touching") > 0)
@@ -205,10 +208,13 @@ static void put_notes(struct report *report)
 {
 	static const char *const whole[] = {"partial", "stopping", "design", "accuracy"};
 	struct notes notes = {0};
+	const cJSON *given = plot_member(plot_member(report->result, "given"), "notes"), *of_samples;
 	notes_collect(report->result, &notes);
-	if (notes.n == 0)
+	if (notes.n == 0 && !plot_first(given))
 		return;
 	put(report, "<h2>Notes</h2>\n<ul>\n");
+	cJSON_ArrayForEach(of_samples, given) if (cJSON_IsString(of_samples))
+	    put_element(report, "li", of_samples->valuestring);
 	for (size_t part = 0; part < sizeof whole / sizeof whole[0]; part++) {
 		const char *note = plot_text(plot_member(report->result, whole[part]), "note");
 		if (*note)
@@ -218,7 +224,10 @@ static void put_notes(struct report *report)
 				notes.times[k] = 0;
 	}
 	put_widest(report);
-	put(report, "</ul>\n<details>\n<summary>notes of single outputs and inputs</summary>\n<ul>\n");
+	put(report, "</ul>\n");
+	if (notes.n == 0)
+		return;
+	put(report, "<details>\n<summary>notes of single outputs and inputs</summary>\n<ul>\n");
 	for (int k = 0; k < notes.n; k++) {
 		char times[40];
 		if (notes.times[k] == 0)
@@ -437,6 +446,9 @@ static void put_work(struct report *report)
 
 static void put_study(struct report *report, const char *study, size_t n_study)
 {
+	// given data have no study
+	if (plot_member(report->result, "given"))
+		return;
 	put(report, "<h2>The study document</h2>\n");
 	if (!study) {
 		put_element(

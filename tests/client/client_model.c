@@ -129,6 +129,85 @@ static void given_samples_have_indices_without_a_study(void **state)
 	unlink(outputs);
 }
 
+static void given_samples_are_drawn_and_reported_as_a_study_is(void **state)
+{
+	(void)state;
+	char inputs[32], outputs[32], result[32];
+	char *x = NULL, *y = NULL;
+	size_t n_x, n_y;
+	FILE *in = open_memstream(&x, &n_x), *out = open_memstream(&y, &n_y);
+	fputs("a,b\n", in);
+	fputs("y\n", out);
+	// a grid of 12 x 12; b has no effect
+	for (int i = 0; i < 144; i++) {
+		fprintf(in, "%d,%d\n", i / 12, i % 12);
+		fprintf(out, "%.17g\n", 0.1 * (i / 12));
+	}
+	fclose(in);
+	fclose(out);
+	file_of(x, inputs);
+	file_of(y, outputs);
+	struct program_outcome table = POUND("indices", "--given", "--format", "table", inputs, outputs);
+	program_expect(&table, 0);
+	assert_non_null(strstr(table.out, "complete factorial design"));
+	assert_non_null(strstr(table.out, "1.000 [ 1.000,  1.000]"));
+	assert_null(strstr(table.out, "-0.00"));
+	assert_null(strstr(table.out, "widest interval"));
+	assert_null(strstr(table.out, "not independent"));
+	assert_null(strstr(table.out, "Sobol"));
+	struct program_outcome json = POUND("indices", "--given", inputs, outputs);
+	program_expect(&json, 0);
+	file_of(json.out, result);
+	static const char *const figures[] = {"indices", "given", "pairs"};
+	for (int k = 0; k < 3; k++) {
+		struct program_outcome figure = POUND("plot", figures[k], result);
+		program_expect(&figure, 0);
+		assert_non_null(strstr(figure.out, "</svg>"));
+		program_free(&figure);
+	}
+	struct program_outcome none = POUND("plot", "widths", result);
+	program_expect(&none, 1);
+	assert_non_null(strstr(none.err, "given data do not have its numbers; it has: indices, given, pairs"));
+	struct program_outcome report = POUND("report", result);
+	program_expect(&report, 0);
+	assert_non_null(strstr(report.out, "the samples are a complete factorial design"));
+	assert_null(strstr(report.out, "The study document"));
+	program_free(&report);
+	program_free(&none);
+	program_free(&json);
+	program_free(&table);
+	unlink(inputs);
+	unlink(outputs);
+	unlink(result);
+	free(x);
+	free(y);
+}
+
+static void what_is_wrong_with_both_tables_is_reported_at_once(void **state)
+{
+	(void)state;
+	char inputs[32], outputs[32];
+	file_of("a,b\n1,x\n", inputs);
+	file_of("y\n1,2\n", outputs);
+	struct program_outcome refused = POUND("indices", "--given", inputs, outputs);
+	program_expect(&refused, 2);
+	assert_non_null(strstr(refused.err, "line 2, b: must be a decimal number"));
+	assert_non_null(strstr(refused.err, "line 2: has 2 cells, the header has 1"));
+	program_free(&refused);
+	unlink(inputs);
+	unlink(outputs);
+	// few samples
+	file_of("a,b\n1,2\n2,1\n", inputs);
+	file_of("y\n1\n2\n", outputs);
+	refused = POUND("indices", "--given", inputs, outputs);
+	program_expect(&refused, 2);
+	assert_non_null(
+	    strstr(refused.err, "2 samples are complete, expected at least 64; with fewer runs use a study"));
+	program_free(&refused);
+	unlink(inputs);
+	unlink(outputs);
+}
+
 static void what_is_wrong_is_said_and_ends_with_2(void **state)
 {
 	(void)state;
@@ -210,6 +289,8 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(given_samples_have_indices_without_a_study),
+           cmocka_unit_test(given_samples_are_drawn_and_reported_as_a_study_is),
+           cmocka_unit_test(what_is_wrong_with_both_tables_is_reported_at_once),
            cmocka_unit_test(what_there_is_to_say_about_a_design_is_said_on_stderr),
            cmocka_unit_test(a_design_has_its_header_and_its_samples),
            cmocka_unit_test(indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv),

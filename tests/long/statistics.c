@@ -1,6 +1,6 @@
 /* statistics.c - quality of the indices: errors, coverage and bias over many designs of functions with exact indices.
  *
- *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise, growth, tails or signals; default: all
+ *   statistics [SEEDS [TABLE]]      TABLE: designs, named, noise, growth, tails, signals or given; default: all
  *
  * 1. A job is one function in one setting; its seeds are computed one after another, so the numbers do not depend on
  *    the number of threads.
@@ -186,6 +186,7 @@ static const struct {
 } tables[] = {
     {"designs", statistics_designs}, {"named", statistics_named}, {"noise", statistics_noise},
     {"growth", statistics_growth},   {"tails", statistics_tails}, {"signals", statistics_signals},
+    {"given", statistics_given},
 };
 
 int main(int argc, char **argv)

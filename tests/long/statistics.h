@@ -57,5 +57,6 @@ void statistics_growth(int n_seeds);  /* designs that grow until their intervals
 void statistics_signals(
     int n_seeds);                   /* CPU time to a half width with signals "auto" and with fixed numbers */
 void statistics_tails(int n_seeds); /* a few samples dominate the variance; many inputs */
+void statistics_given(int n_seeds); /* random samples without a design */
 
 #endif

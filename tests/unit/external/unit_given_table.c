@@ -47,9 +47,10 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 	struct problems problems;
 	static double points[N * 2], values[4 * N], sums[N];
 	static size_t order[N];
+	static int cell[N];
 	static struct pound_given_indices indices;
 	struct pound_input inputs[2] = {{.name = "a"}, {.name = "b"}};
-	struct pound_given given = {.n_rows = N, .n_inputs = 2, .x = points, .inputs = inputs};
+	struct pound_given given = {.n_rows = N, .n_inputs = 2, .sorted = true, .x = points, .inputs = inputs};
 	struct pound_given_checks checks;
 	double *scratch = calloc(pound_given_scratch(N, 2), sizeof *scratch);
 	size_t n;
@@ -60,9 +61,9 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 		points[2 * i + 1] = (37 * i) % N;
 		sums[i] = points[2 * i] + points[2 * i + 1];
 	}
-	pound_given_inputs(&given, values, order);
+	pound_given_inputs(&given, values, cell, order);
 	pound_given_check(&given, scratch, &checks);
-	pound_given_estimate(&given, &checks, sums, scratch, &indices);
+	pound_given_estimate(&given, &checks, &(struct pound_given_output){sums, NULL}, scratch, &indices);
 	for (int k = 0; k < 2; k++) {
 		// a table of outputs may contain the inputs again
 		read_all(&x, &y, one, k ? both : two);
@@ -109,7 +110,9 @@ static void samples_without_a_number_are_left_out_and_counted(void **state)
 	given_table_free(&y);
 	read_all(&x, &y, one, few);
 	assert_null(given_indices(&x, &y, &problems, &n));
-	assert_string_equal(problems.list[0].detail, "60 samples are complete, expected at least 64");
+	assert_string_equal(
+	    problems.list[0].detail,
+	    "60 samples are complete, expected at least 64; with fewer runs use a study: `pound design'");
 	given_table_free(&x);
 	given_table_free(&y);
 	free(one);
@@ -203,8 +206,170 @@ static void blank_lines_at_the_end_are_no_samples(void **state)
 	given_table_free(&x);
 }
 
+/* Inputs and outputs of N lines as CSV. */
+struct tables {
+	char *x, *y;
+	FILE *inputs, *outputs;
+	size_t n_x, n_y;
+};
+
+static void tables_open(struct tables *t, const char *outputs)
+{
+	*t = (struct tables){0};
+	t->inputs = open_memstream(&t->x, &t->n_x);
+	t->outputs = open_memstream(&t->y, &t->n_y);
+	fputs("a,b\n", t->inputs);
+	fprintf(t->outputs, "%s\n", outputs);
+}
+
+/* The result of both tables; NULL: refused. */
+static struct reading *tables_close(struct tables *t, struct problems *problems)
+{
+	struct given_table x, y;
+	size_t n;
+	fclose(t->inputs);
+	fclose(t->outputs);
+	read_all(&x, &y, t->x, t->y);
+	char *json = given_indices(&x, &y, problems, &n);
+	struct reading *result = json ? reading_open(json, n) : NULL;
+	free(json);
+	given_table_free(&x);
+	given_table_free(&y);
+	free(t->x);
+	free(t->y);
+	return result;
+}
+
+static bool notes_have(const struct reading *result, const char *words)
+{
+	const char *note;
+	for (int k = 0; (note = reading_text(result, "/given/notes/%d", k)); k++)
+		if (strstr(note, words))
+			return true;
+	return false;
+}
+
+/* Points of a lattice in no order of either input, as pseudo-random as the tests need. */
+static double point(int i, int input)
+{
+	uint32_t bits = (uint32_t)(2 * i + input + 1) * 2654435769u;
+	bits ^= bits >> 15;
+	bits *= 2246822519u;
+	bits ^= bits >> 13;
+	return bits / 4294967296.0;
+}
+
+/* The same noise as columns of a variance, as columns of replicates and as lines with the same inputs: one output, the same noise. */
+static void variances_and_replicates_are_no_outputs(void **state)
+{
+	(void)state;
+	enum { ROWS = 200 };
+	static const char *const headers[] = {"y,y.variance", "y.replicate1,y.replicate2", "y"};
+	double first[3];
+	for (int k = 0; k < 3; k++) {
+		struct tables t;
+		struct problems problems;
+		tables_open(&t, headers[k]);
+		for (int i = 0; i < ROWS; i++) {
+			const double a = point(i, 0), b = point(i, 1), y = a + b, off = 0.25 * (point(i + ROWS, 0) - 0.5);
+			for (int line = 0; line < (k == 2 ? 2 : 1); line++)
+				fprintf(t.inputs, "%.17g,%.17g\n", a, b);
+			// the variance of a mean of two that are off by the same: off^2
+			if (k == 0)
+				fprintf(t.outputs, "%.17g,%.17g\n", y, off * off);
+			else
+				fprintf(t.outputs, "%.17g%s%.17g\n", y + off, k == 1 ? "," : "\n", y - off);
+		}
+		struct reading *result = tables_close(&t, &problems);
+		assert_non_null(result);
+		assert_int_equal(reading_count(result, "/cells/0/outputs"), 1);
+		assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
+		check_near(reading_number(result, "/given/samples"), ROWS, 0);
+		check_near(reading_number(result, "/cells/0/runs"), k == 2 ? 2 * ROWS : ROWS, 0);
+		// uniform in +-1/8: 1/192, of 1/6 and this: 0.03
+		check_near(reading_number(result, "/cells/0/outputs/0/noise_share"), 0.03, 0.01);
+		assert_false(notes_have(result, "cannot separate the noise") ||
+		             notes_have(result, "not independent") || notes_have(result, "pattern"));
+		assert_true(notes_have(result, "are replicates") == (k == 2));
+		first[k] = reading_number(result, "/cells/0/outputs/0/inputs/0/S1");
+		check_near(first[k], 0.5, 0.1);
+		reading_close(result);
+	}
+	check_near(first[1], first[0], 1e-9);
+	check_near(first[2], first[0], 1e-9);
+}
+
+static void columns_that_do_not_make_an_output_are_refused(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *header, *cells, *pointer, *words;
+	} bad[] = {
+	    {"z,y.variance", "1,1", "y", "has a variance, but no column of its own"},
+	    {"y,z,y.variance", "1,1,1", "z", "has no variance, but other outputs have"},
+	    {"y,y.variance", "1,-1", "line 2, y.variance", "must be at least 0, got -1"},
+	    {"y.replicate1", "1", "y", "must have its replicates numbered from 1 on, at least 2"},
+	    {"y.replicate1,y.replicate3", "1,1", "y", "must have its replicates numbered from 1 on, at least 2"},
+	    {"y.replicate1,y.replicate2,z", "1,1,1", "z", "must have columns NAME.replicate1"},
+	};
+	for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+		struct tables t;
+		struct problems problems;
+		tables_open(&t, bad[k].header);
+		for (int i = 0; i < N; i++) {
+			fprintf(t.inputs, "%.17g,%.17g\n", point(i, 0), point(i, 1));
+			fprintf(t.outputs, "%s\n", bad[k].cells);
+		}
+		assert_null(tables_close(&t, &problems));
+		check_report("%s: %s", problems.list[0].pointer, problems.list[0].detail);
+		assert_string_equal(problems.list[0].pointer, bad[k].pointer);
+		assert_non_null(strstr(problems.list[0].detail, bad[k].words));
+	}
+}
+
+/* Lines sorted by an output: the inputs that it depends on are sorted nearly, which is no chain. */
+static void a_sorted_table_is_no_markov_chain(void **state)
+{
+	(void)state;
+	enum { ROWS = 400 };
+	for (int sorted = 0; sorted < 2; sorted++) {
+		struct tables t;
+		struct problems problems;
+		tables_open(&t, "y");
+		for (int i = 0; i < ROWS; i++) {
+			// a and y ascend, but for a shuffle of neighbors in a; without the sorted output it looks like a chain
+			const double y = sorted ? i : point(i, 0), a = i + 30 * point(i, 1);
+			fprintf(t.inputs, "%.17g,%.17g\n", a, point(i, 0));
+			fprintf(t.outputs, "%.17g\n", y);
+		}
+		struct reading *result = tables_close(&t, &problems);
+		assert_non_null(result);
+		assert_true(notes_have(result, "successive samples are correlated") == !sorted);
+		reading_close(result);
+	}
+}
+
+static void few_different_inputs_are_refused(void **state)
+{
+	(void)state;
+	struct tables t;
+	struct problems problems;
+	tables_open(&t, "y");
+	for (int i = 0; i < N; i++) {
+		fprintf(t.inputs, "%.17g,%.17g\n", point(i / 2, 0), point(i / 2, 1));
+		fprintf(t.outputs, "%d\n", i);
+	}
+	assert_null(tables_close(&t, &problems));
+	assert_string_equal(problems.list[0].detail,
+	                    "the 100 complete lines have 50 different inputs, expected at least 64");
+}
+
 CHECK_MAIN(cmocka_unit_test(indices_of_two_tables_are_those_of_the_engine),
            cmocka_unit_test(samples_without_a_number_are_left_out_and_counted),
            cmocka_unit_test(what_is_wrong_with_a_table_is_reported_completely),
            cmocka_unit_test(tables_that_do_not_go_together_are_refused),
-           cmocka_unit_test(blank_lines_at_the_end_are_no_samples))
+           cmocka_unit_test(blank_lines_at_the_end_are_no_samples),
+           cmocka_unit_test(variances_and_replicates_are_no_outputs),
+           cmocka_unit_test(columns_that_do_not_make_an_output_are_refused),
+           cmocka_unit_test(a_sorted_table_is_no_markov_chain),
+           cmocka_unit_test(few_different_inputs_are_refused))

@@ -4,67 +4,12 @@
 
 #include "engine/given.h"
 #include "tests/support/check.h"
+#include "tests/support/given_samples.h"
 
 enum { N = 2000, D = 3 };
 
-/* Samples, with the arrays that an estimate needs. */
-struct samples {
-	struct pound_given given;
-	struct pound_input inputs[POUND_INPUTS_MAX];
-	struct pound_given_checks checks;
-	double *x, *y, *values, *scratch;
-	size_t *order;
-};
-
-static uint64_t state_of_draws;
-
-/* Uniform draws in (0, 1): the 53 highest bits of a linear congruential sequence of 64 bits (Knuth, MMIX). */
-static double draw(void)
-{
-	state_of_draws = state_of_draws * 6364136223846793005u + 1442695040888963407u;
-	return ((double)(state_of_draws >> 11) + 0.5) * 0x1p-53;
-}
-
-static void samples_draw(struct samples *s, int n, int d, uint64_t seed)
-{
-	state_of_draws = seed;
-	*s = (struct samples){.given = {.n_rows = n, .n_inputs = d}};
-	s->x = calloc((size_t)n * (d + 1) + 2 * (size_t)n * d, sizeof *s->x);
-	s->y = s->x + (size_t)n * d;
-	s->values = s->y + n;
-	s->order = calloc((size_t)n, sizeof *s->order);
-	s->scratch = calloc(pound_given_scratch(n, d), sizeof *s->scratch);
-	for (int k = 0; k < 10 + n * d; k++)
-		s->x[k < 10 ? 0 : k - 10] = draw();
-}
-
-static void samples_check(struct samples *s)
-{
-	s->given.x = s->x;
-	s->given.inputs = s->inputs;
-	pound_given_inputs(&s->given, s->values, s->order);
-	pound_given_check(&s->given, s->scratch, &s->checks);
-}
-
-static void estimate(struct samples *s, struct pound_given_indices *indices)
-{
-	pound_given_estimate(&s->given, &s->checks, s->y, s->scratch, indices);
-}
-
-static void samples_free(struct samples *s)
-{
-	free(s->x);
-	free(s->order);
-	free(s->scratch);
-}
-
-static bool says(unsigned notes, int note)
-{
-	return notes >> note & 1;
-}
-
 /* Ishigami's function of uniform draws. */
-static void ishigami(struct samples *s)
+static void ishigami(struct given_samples *s)
 {
 	for (int i = 0; i < s->given.n_rows; i++) {
 		const double *u = s->x + (size_t)i * D;
@@ -73,29 +18,21 @@ static void ishigami(struct samples *s)
 	}
 }
 
-static void check_holds(struct pound_estimate e, double value, const char *what, int *missed)
-{
-	if (!(e.low <= value && value <= e.high)) {
-		check_report("%s: %.4f is not in [%.4f, %.4f]", what, value, e.low, e.high);
-		++*missed;
-	}
-}
-
 /* y = 1 + 2 u1 + 3 (u2 - 1/2) (u3 - 1/2) is a polynomial and explained completely, so errors come from the sample's
  * own moments, which the intervals include. */
 static void a_polynomial_has_the_indices_of_its_coefficients(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices;
 	const double v1 = 4.0 / 12, v23 = 9.0 / 144, v = v1 + v23;
-	samples_draw(&s, N, D, 7);
+	given_draw(&s, N, D, 7);
 	for (int i = 0; i < N; i++) {
 		const double *u = s.x + (size_t)i * D;
 		s.y[i] = 1 + 2 * u[0] + 3 * (u[1] - 0.5) * (u[2] - 0.5);
 	}
-	samples_check(&s);
-	estimate(&s, &indices);
+	given_check(&s);
+	given_estimate(&s, &indices);
 	assert_true(indices.explained > 0.999);
 	check_near(indices.variance, v, 4 * v * sqrt(2.0 / N));
 	// standard deviation of the fraction of two sample variances
@@ -107,7 +44,7 @@ static void a_polynomial_has_the_indices_of_its_coefficients(void **state)
 	check_near(indices.second[2].estimate.value, v23 / v, error);
 	assert_int_equal(indices.second[2].inputs, 6);
 	check_near(indices.second[0].estimate.value, 0, error);
-	samples_free(&s);
+	given_free(&s);
 }
 
 static void indices_of_ishigami_are_in_their_intervals(void **state)
@@ -118,165 +55,203 @@ static void indices_of_ishigami_are_in_their_intervals(void **state)
 	enum { SEEDS = 40 };
 	int missed = 0;
 	for (int seed = 0; seed < SEEDS; seed++) {
-		struct samples s;
+		struct given_samples s;
 		struct pound_given_indices indices;
-		samples_draw(&s, N, D, 1000 + (uint64_t)seed);
+		given_draw(&s, N, D, 1000 + (uint64_t)seed);
 		ishigami(&s);
-		samples_check(&s);
-		estimate(&s, &indices);
-		assert_false(says(s.checks.notes, POUND_GIVEN_ARRANGED) || says(s.checks.notes, POUND_GIVEN_SERIAL));
+		given_check(&s);
+		given_estimate(&s, &indices);
+		assert_false(given_says(s.checks.notes, POUND_GIVEN_ARRANGED) ||
+		             given_says(s.checks.notes, POUND_GIVEN_SERIAL));
 		assert_true(indices.explained > 0.9);
 		for (int j = 0; j < D; j++) {
 			check_near(indices.first[j].value, first[j], 0.06);
 			check_near(indices.total[j].value, total[j], 0.06);
-			check_holds(indices.first[j], first[j], names[0], &missed);
-			check_holds(indices.total[j], total[j], names[1], &missed);
+			given_check_holds(indices.first[j], first[j], names[0], &missed);
+			given_check_holds(indices.total[j], total[j], names[1], &missed);
 		}
-		samples_free(&s);
+		given_free(&s);
 	}
 	// at least 0.90 of the intervals hold, less 2.4 binomial standard deviations of their number
 	check_report("%d of %d intervals missed", missed, SEEDS * 2 * D);
 	assert_true(missed <= 0.10 * SEEDS * 2 * D + 3 * sqrt(0.09 * SEEDS) * 2);
 }
 
+/* (u1 - 0.3) (u2 + 0.2) + u3 is a polynomial, so that all error of its indices is that of the moments of the samples. */
+static void intervals_include_the_error_of_the_moments_of_the_samples(void **state)
+{
+	(void)state;
+	enum { SEEDS = 100, FEW = 500 };
+	// 0.7^2 / 12, 0.2^2 / 12, 1 / 12 and the interaction 1 / 144
+	const double part[] = {0.49 / 12, 0.04 / 12, 1.0 / 12}, both = 1.0 / 144,
+	             variance = part[0] + part[1] + part[2] + both;
+	int missed[3] = {0}, missed_total[3] = {0};
+	double error = 0.0;
+	for (int seed = 0; seed < SEEDS; seed++) {
+		struct given_samples s;
+		struct pound_given_indices indices;
+		given_draw(&s, FEW, D, 8000 + (uint64_t)seed);
+		for (int i = 0; i < FEW; i++) {
+			const double *u = s.x + (size_t)i * D;
+			s.y[i] = (u[0] - 0.3) * (u[1] + 0.2) + u[2];
+		}
+		given_check(&s);
+		given_estimate(&s, &indices);
+		for (int j = 0; j < D; j++) {
+			const double total = (part[j] + (j < 2 ? both : 0.0)) / variance;
+			given_check_holds(indices.first[j], part[j] / variance, "S1", &missed[j]);
+			given_check_holds(indices.total[j], total, "ST", &missed_total[j]);
+			error += (indices.total[j].value - total) * (indices.total[j].value - total) / (3 * SEEDS);
+		}
+		given_free(&s);
+	}
+	// 0.95 +- 0.02 of 100; without the moments 0.69 of one index
+	for (int j = 0; j < D; j++)
+		assert_true(missed[j] <= 12 && missed_total[j] <= 12);
+	// with the variance of the samples in place of the fit's: 0.025
+	check_report("root mean square error of ST %.4f", sqrt(error));
+	assert_true(sqrt(error) < 0.018);
+}
+
 static void what_no_polynomial_explains_has_no_total_indices(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices;
-	samples_draw(&s, N, D, 3);
+	given_draw(&s, N, D, 3);
 	// parity of three inputs: first-order indices are 0, and no polynomial of low degree explains any of it
 	for (int i = 0; i < N; i++) {
 		s.y[i] = 1;
 		for (int j = 0; j < D; j++)
 			s.y[i] *= fmod(floor(8 * s.x[(size_t)i * D + j]), 2) ? 1 : -1;
 	}
-	samples_check(&s);
-	estimate(&s, &indices);
-	assert_true(says(indices.notes, POUND_GIVEN_UNEXPLAINED));
+	given_check(&s);
+	given_estimate(&s, &indices);
+	assert_true(given_says(indices.notes, POUND_GIVEN_UNEXPLAINED));
 	assert_int_equal(indices.n_second, 0);
 	for (int j = 0; j < D; j++) {
 		assert_true(isnan(indices.total[j].value));
 		// four standard errors
 		check_near(indices.first[j].value, 0.0, indices.first[j].high - indices.first[j].low);
 	}
-	samples_free(&s);
+	given_free(&s);
 }
 
 static void an_input_of_few_values_is_discrete(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices;
-	samples_draw(&s, N, D, 11);
+	given_draw(&s, N, D, 11);
 	// the first input has three values of equal probability: y = value + second input, (2/3) / (2/3 + 1/12)
 	for (int i = 0; i < N; i++) {
 		double *x = s.x + (size_t)i * D;
 		x[0] = floor(3 * x[0]);
 		s.y[i] = x[0] + x[1];
 	}
-	samples_check(&s);
+	given_check(&s);
 	assert_int_equal(s.inputs[0].distribution.n_values, 3);
 	assert_int_equal(s.inputs[1].distribution.n_values, N);
 	check_near(s.inputs[0].distribution.values[2], 2.0, 0.0);
-	estimate(&s, &indices);
+	given_estimate(&s, &indices);
 	check_near(indices.first[0].value, 8.0 / 9, 4 * (8.0 / 81) * sqrt(4.0 / N));
 	// the conditional mean at the three values
 	for (int k = 0; k < 3; k++)
 		check_near(indices.curves[0].mean[k].value, k + 0.5, 5 * sqrt(1 / 12.0 / (N / 3.0)));
-	samples_free(&s);
+	given_free(&s);
 }
 
 static void independent_samples_pass_and_others_are_named(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices;
 	int flagged = 0;
 	for (int seed = 0; seed < 100; seed++) {
-		samples_draw(&s, 500, D, 5000 + (uint64_t)seed);
-		samples_check(&s);
+		given_draw(&s, 500, D, 5000 + (uint64_t)seed);
+		given_check(&s);
 		flagged += s.checks.notes != 1u << POUND_GIVEN_NOISE;
-		samples_free(&s);
+		given_free(&s);
 	}
 	// one set in a hundred fails by chance
 	assert_true(flagged <= 5);
-	samples_draw(&s, N, D, 5);
+	given_draw(&s, N, D, 5);
 	for (int i = 0; i < N; i++)
 		s.x[(size_t)i * D + 2] = s.x[(size_t)i * D + 1] + 0.5 * s.x[(size_t)i * D + 2];
 	ishigami(&s);
-	samples_check(&s);
-	assert_true(says(s.checks.notes, POUND_GIVEN_DEPENDENT));
+	given_check(&s);
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_DEPENDENT));
 	assert_int_equal(s.checks.pair[0], 1);
 	assert_int_equal(s.checks.pair[1], 2);
 	assert_true(s.checks.correlation > 0.7);
-	estimate(&s, &indices);
+	given_estimate(&s, &indices);
 	assert_true(isnan(indices.total[0].value) && isnan(indices.explained) && indices.n_second == 0);
 	assert_true(isfinite(indices.first[1].value));
-	samples_free(&s);
+	given_free(&s);
 	// uncorrelated, but on a circle
-	samples_draw(&s, N, 2, 6);
+	given_draw(&s, N, 2, 6);
 	for (int i = 0; i < N; i++) {
 		const double turn = 2 * M_PI * s.x[(size_t)i * 2];
 		s.x[(size_t)i * 2] = cos(turn);
 		s.x[(size_t)i * 2 + 1] = sin(turn);
 	}
-	samples_check(&s);
-	assert_true(says(s.checks.notes, POUND_GIVEN_DEPENDENT));
-	samples_free(&s);
+	given_check(&s);
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_DEPENDENT));
+	given_free(&s);
 	// a lattice: equal distances in one input are equal distances in the other
-	samples_draw(&s, N, 2, 8);
+	given_draw(&s, N, 2, 8);
+	s.given.sorted = true;
 	for (int i = 0; i < N; i++) {
 		s.x[(size_t)i * 2] = (i + 0.5) / N;
 		s.x[(size_t)i * 2 + 1] = fmod((i + 0.5) * 0.6180339887498949, 1.0);
 	}
-	samples_check(&s);
-	assert_true(says(s.checks.notes, POUND_GIVEN_ARRANGED));
-	assert_true(says(s.checks.notes, POUND_GIVEN_SERIAL));
-	samples_free(&s);
+	given_check(&s);
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_ARRANGED));
+	given_free(&s);
 }
 
 static void a_constant_has_no_indices(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices;
-	samples_draw(&s, 64, 1, 9);
+	given_draw(&s, 64, 1, 9);
 	for (int i = 0; i < 64; i++)
 		s.y[i] = 0.1;
-	samples_check(&s);
+	given_check(&s);
 	assert_int_equal(s.checks.pair[0], -1);
-	estimate(&s, &indices);
-	assert_true(says(indices.notes, POUND_GIVEN_CONSTANT));
+	given_estimate(&s, &indices);
+	assert_true(given_says(indices.notes, POUND_GIVEN_CONSTANT));
 	assert_true(isnan(indices.first[0].value) && isnan(indices.total[0].value));
-	samples_free(&s);
+	given_free(&s);
 }
 
 static void a_shift_and_a_scale_change_nothing(void **state)
 {
 	(void)state;
-	struct samples s;
+	struct given_samples s;
 	struct pound_given_indices indices, moved;
-	samples_draw(&s, N, D, 12);
+	given_draw(&s, N, D, 12);
 	ishigami(&s);
-	samples_check(&s);
-	estimate(&s, &indices);
+	given_check(&s);
+	given_estimate(&s, &indices);
 	for (int i = 0; i < N; i++)
 		s.y[i] = 1e6 + 3 * s.y[i];
 	for (int i = 0; i < N * D; i++)
 		s.x[i] = exp(s.x[i]);
-	samples_check(&s);
-	estimate(&s, &moved);
+	given_check(&s);
+	given_estimate(&s, &moved);
 	// 1e6 / 3 standard deviations of the output, each value rounded to DBL_EPSILON / 2 of 1e6
 	for (int j = 0; j < D; j++) {
 		check_near(moved.first[j].value, indices.first[j].value, 1e-9);
 		check_near(moved.total[j].value, indices.total[j].value, 1e-9);
 	}
-	samples_free(&s);
+	given_free(&s);
 }
 
 CHECK_MAIN(cmocka_unit_test(a_polynomial_has_the_indices_of_its_coefficients),
            cmocka_unit_test(indices_of_ishigami_are_in_their_intervals),
+           cmocka_unit_test(intervals_include_the_error_of_the_moments_of_the_samples),
            cmocka_unit_test(what_no_polynomial_explains_has_no_total_indices),
            cmocka_unit_test(an_input_of_few_values_is_discrete),
            cmocka_unit_test(independent_samples_pass_and_others_are_named),
