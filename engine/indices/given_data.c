@@ -32,7 +32,7 @@ enum {
 static const double DEPENDENT = 4.0, ARRANGED = 5.0;
 static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
 // coverage of S1 by the effective rows of the variance, n / kurtosis: engine/indices/statistics.md
-static const double ROWS_BEHIND = 25.0, KURTOSIS_MOST = 20.0;
+static const double ROWS_BEHIND = 50.0, KURTOSIS_MOST = 20.0;
 
 /* ---- the scratch ---- */
 
@@ -337,6 +337,7 @@ static bool centre(const struct pound_given *given, const struct pound_given_out
 static void first_fill(const struct pound_rows *rows, const struct space *s, const struct pound_polynomial *p,
                        bool neighbors, struct pound_given_indices *indices)
 {
+	const bool heavy = indices->notes >> POUND_GIVEN_FEW_DECIDE & 1;
 	struct pound_estimate local[POUND_INPUTS_MAX];
 	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
 	pound_local_regression_first(rows, s->u, POUND_NOISE_REMOVED, s->rest, local);
@@ -344,7 +345,9 @@ static void first_fill(const struct pound_rows *rows, const struct space *s, con
 		// a discrete input uses means at its values, not neighbors
 		const bool known = neighbors || pound_rows_levels(rows, j) > 0;
 		const struct pound_estimate fitted = fits ? widened(p->value[j], indices->explained) : UNKNOWN;
-		indices->first[j] = known && !(width(fitted) < width(local[j])) ? local[j] : fitted;
+		// folds are too few for the tails: not its narrower intervals
+		const bool wider = heavy || !(width(fitted) < width(local[j]));
+		indices->first[j] = known && wider ? local[j] : fitted;
 		indices->notes |= !known && !fits ? 1u << POUND_GIVEN_FIRST_UNKNOWN : 0u;
 	}
 }
@@ -463,8 +466,8 @@ void pound_given_estimate(const struct pound_given *given, const struct pound_gi
 	if (!by_factorial)
 		others_fill(given, p, indices);
 	if (!factorial) {
-		first_fill(&rows, &s, p, neighbors, indices);
 		indices->notes |= few_decide(&s, given->n_rows) ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+		first_fill(&rows, &s, p, neighbors, indices);
 	} else if (!by_factorial)
 		pound_factorial_indices(given, output, s.rest, indices);
 	curves_fill(&rows, &s, p, indices);
