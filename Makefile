@@ -172,10 +172,10 @@ test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) -s check
 check: all $(TESTS) $(LONG)
 	@tests/run-tests $(B) $(T)
-# how fast the engine is, a table; ROWS of the paper campaign's design, for trials
+# how fast the engine is, a table; ROWS of the paper campaign's design, for trials; PART: one group of rows
 ROWS ?= 1000
 bench: $(B)/tests/long/bench
-	@$< $(ROWS)
+	@$< $(ROWS) $(PART)
 $(B)/tests/long/bench: $(patsubst %.c,$(B)/%.o,$(wildcard tests/long/bench_*.c))
 # what the engine is measured against is to be as fast as a compiler makes it
 $(B)/tests/support/baseline_loop.o $(B)/tests/support/baseline_chain.o: CFLAGS += -O3

@@ -3,7 +3,7 @@
  * 1. A piece is divided into 2^L equal segments, so that w times a segment is at most 1.5 radians and a power series of the
  *    oscillator ends in rounding; the fastest of a group of eight sets L, and the group shares all steps.
  * 2. A whole sample of free motion is linear in the oscillator's state and in four state numbers of the floor, by maps
- *    that are computed once; any other piece is integrated by the series.
+ *    that are computed once (oscillator_maps.inl); any other piece is integrated by the series.
  * 3. Bounds from an oscillator's energy and the floor's acceleration prove for most pieces that no new largest displacement
  *    lies inside.  In the others each segment is checked: the cubic through both of its ends plus its error bound may prove
  *    the same; if not, the roots of the velocity are refined on the series.  So maxima between steps are found, too.
@@ -75,6 +75,12 @@ struct drive_map {
 	vd z[4][G], v[4][G];
 };
 
+/* State numbers of a floor in free motion a segment later, per unit of each: of spring force and velocity. */
+struct floor_map {
+	double r[4], v[4];
+	double share; /* segment over sample: what the forcing gains of its growth */
+};
+
 /* Error bound of the cubic through the ends of a segment: factors of |z| and |v| at its start and of the bounds A, A', A'' of the
  * drive over the piece. */
 struct cubic_error {
@@ -85,7 +91,8 @@ struct cubic_error {
 struct maps {
 	struct segment whole, segment;
 	struct passage of_whole, of_segment;
-	struct drive_map drive_of_whole[POUND_FLOOR_MAPS], drive_of_segment[POUND_FLOOR_MAPS][SEGMENTS_MAX];
+	struct drive_map drive_of_whole[POUND_FLOOR_MAPS], drive_of_segment[POUND_FLOOR_MAPS];
+	struct floor_map floor_of_segment[POUND_FLOOR_MAPS];
 	vd on_start[G], on_rate[G]; /* factors of a and its rate at the start of the sample */
 	vd on_bound[3][G];          /* factors of A, A', A'' */
 	struct cubic_error miss_of_whole[G];
@@ -197,36 +204,78 @@ LANE_INLINE void force_fill(struct force *force, const struct pound_segment_powe
 	}
 }
 
-/* ---- series ---- */
+/* ---- responses ---- */
 
-/* Increments of a group over a segment: unlike roundings of a factor near 1, roundings of an increment do not accumulate over
- * thousands of samples.
+/* Responses at the end of a segment, of oscillators initially at rest: to a level of 1, and to a pulse. */
+struct response {
+	vd level[G], pulse[G];
+};
+
+/* Increments of a group over a segment by a force, and its responses to a level and a pulse; neither depends on the state, so that
+ * the series of several segments overlap in the processor.
  *
- * Given    z, y  at the start
- * Returns  z, y  their increments
+ * Returns  z, y  displacement and velocity at the end, from rest
  *
- * With d_n the n-th derivative of z:  d_n+2 = -(2 xi x d_n+1 + x^2 d_n + f_n)     increments: sum d_n/n!, sum d_n+1/n!, n > 0
+ * | Y_k | displacement at the end after z'' + 2 xi x z' + x^2 z = t^k/k! from rest; of the k-th derivative of a force |
+ * | Y_0, Y_-1 | responses to a level and to a pulse |
+ *
+ *   Y_k' = Y_k-1, therefore     Y_k-2 = 1/k! - 2 xi x Y_k-1 - x^2 Y_k
+ *
+ * Downwards this sums the power series of every Y from its last term: stable for x <= 1.5.
  */
-LANE_INLINE void series_pass(const struct segment *p, const struct force *force, vd z[G], vd y[G])
+LANE_INLINE void force_pass(const struct segment *p, const struct force *force, int order, vd z[G], vd y[G],
+                            struct response *response)
 {
-	const int terms = force->terms;
-	vd now[G], next[G];
-	for (int i = 0; i < G; i++) {
-		now[i] = y[i];
-		next[i] = vfma(p->damp[i], y[i], vfma(p->stiff[i], z[i], vsplat(force->of[0])));
-		z[i] = y[i] = vsplat(0);
-	}
-	for (int n = 1; n <= terms; n++) {
-		const vd factor = vsplat(POUND_FACTOR[n]), f = vsplat(force->of[n]);
+	vd next[G], now[G]; // Y_k, Y_k-1
+	for (int i = 0; i < G; i++)
+		next[i] = now[i] = z[i] = y[i] = vsplat(0);
+	for (int k = force->terms + 1; k > order + 1; k--) {
+		const vd power = vsplat(POUND_FACTOR[k]);
 		for (int i = 0; i < G; i++) {
-			z[i] = vfma(now[i], factor, z[i]);
-			y[i] = vfma(next[i], factor, y[i]);
-			const vd after = vfma(p->damp[i], next[i], vfma(p->stiff[i], now[i], f));
-			now[i] = next[i];
-			next[i] = after;
+			const vd before = vfma(p->damp[i], now[i], vfma(p->stiff[i], next[i], power));
+			next[i] = now[i];
+			now[i] = before;
 		}
 	}
+	for (int k = order + 1; k > 0; k--) {
+		const vd power = vsplat(POUND_FACTOR[k]), f = vsplat(force->of[k - 1]);
+		for (int i = 0; i < G; i++) {
+			const vd before = vfma(p->damp[i], now[i], vfma(p->stiff[i], next[i], power));
+			next[i] = now[i];
+			now[i] = before;
+			z[i] = vfma(f, next[i], z[i]);
+			y[i] = vfma(f, now[i], y[i]);
+		}
+	}
+	for (int i = 0; i < G; i++)
+		response->level[i] = next[i], response->pulse[i] = now[i];
 }
+
+/* Increments of a state over a segment without a drive: unlike roundings of a factor near 1, roundings of an increment do not
+ * accumulate over thousands of samples. */
+LANE_INLINE void passage_fill(struct passage *passage, const struct response *response,
+                              const struct segment *p)
+{
+	const double per_step = 1 / p->step;
+	for (int i = 0; i < G; i++) {
+		const vd level = p->stiff[i] * response->level[i];
+		passage->zz[i] = level;
+		passage->zv[i] = response->pulse[i] * p->step;
+		passage->vz[i] = p->stiff[i] * response->pulse[i] * per_step;
+		passage->vv[i] = vfma(p->damp[i], response->pulse[i], level);
+	}
+}
+
+/* Advances a state by a passage and by the increments more_z and more_v of a drive. */
+LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd more_z, vd more_v)
+{
+	more_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, more_z));
+	more_v = vfma(m->vz[i], *z, vfma(m->vv[i], *v, more_v));
+	*z = *z + more_z;
+	*v = *v + more_v;
+}
+
+/* ---- series ---- */
 
 LANE_INLINE vd series_at(const vd *c, int terms, vd t)
 {
@@ -274,7 +323,8 @@ LANE_INLINE vd polished(const struct series *s, vd t)
 LANE_SHARED vd segment_top(const struct stage *stage, const struct force *force, vm risk, vd top)
 {
 	const struct segment *p = stage->segment;
-	struct series s = {.terms = force->terms};
+	struct series s;
+	s.terms = force->terms; // the arrays are not cleared
 	vd zero = vsplat(0), one = vsplat(1), now = stage->z, next = stage->v * p->step;
 	for (int n = 0; n <= s.terms; n++) {
 		const vd after = vfma(p->damp[stage->i], next, vfma(p->stiff[stage->i], now, vsplat(force->of[n])));
@@ -367,14 +417,15 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	for (int i = 0; i < G && any; i++)
 		miss[i] = cubic_error_of(p, g, i);
 	for (int j = 0; j < p->n; j++) {
+		struct response response;
+		struct passage passage;
 		vd z[G], y[G];
 		force_fill(&force, bank->powers, &made, p, j);
-		for (int i = 0; i < G; i++)
-			z[i] = s->z[i], y[i] = s->v[i] * p->step;
-		series_pass(p, &force, z, y);
+		force_pass(p, &force, larger(order, 0), z, y, &response);
+		passage_fill(&passage, &response, p);
 		for (int i = 0; i < G; i++) {
-			struct stage stage = {
-			    p, i, own->bound, s->z[i], s->v[i], s->z[i] + z[i], vfma(y[i], vsplat(per_step), s->v[i])};
+			struct stage stage = {p, i, own->bound, s->z[i], s->v[i], s->z[i], s->v[i]};
+			passage_take(&passage, i, &stage.z1, &stage.v1, z[i], y[i] * per_step);
 			if (any && vany(risk[i])) {
 				s->top[i] = vselect(risk[i], vmax(s->top[i], vabs(stage.z1)), s->top[i]);
 				const vm inside = risk_of_segment(&stage, &miss[i], s->top[i]) & risk[i];
@@ -387,202 +438,7 @@ LANE_INLINE void piece_move(const struct pound_bank *bank, const struct pound_ba
 	}
 }
 
-/* ---- free motion ---- */
-
-/* Increments of oscillators over a segment without a drive. */
-static void passage_fill(struct passage *passage, const struct segment *p)
-{
-	const struct force none = {.terms = p->terms};
-	const double per_step = 1 / p->step;
-	for (int state = 0; state < 2; state++) {
-		vd z[G], y[G];
-		for (int i = 0; i < G; i++)
-			z[i] = vsplat(state == 0), y[i] = vsplat(state == 0 ? 0 : p->step);
-		series_pass(p, &none, z, y);
-		for (int i = 0; i < G; i++) {
-			(state == 0 ? passage->zz : passage->zv)[i] = z[i];
-			(state == 0 ? passage->vz : passage->vv)[i] = y[i] * per_step;
-		}
-	}
-}
-
-/* Advances a state by a passage and by the increments more_z and more_v of a drive. */
-LANE_INLINE void passage_take(const struct passage *m, int i, vd *z, vd *v, vd more_z, vd more_v)
-{
-	more_z = vfma(m->zz[i], *z, vfma(m->zv[i], *v, more_z));
-	more_v = vfma(m->vz[i], *z, vfma(m->vv[i], *v, more_v));
-	*z = *z + more_z;
-	*v = *v + more_v;
-}
-
-/* Appends a segment to a passage, by the increments of a unit displacement and a unit velocity. */
-LANE_INLINE void passage_append(struct passage *all, const struct passage *m, int i)
-{
-	const vd z = 1.0 + all->zz[i], v = 1.0 + all->vv[i];
-	const vd zz = vfma(m->zz[i], z, m->zv[i] * all->vz[i]), vz = vfma(m->vz[i], z, m->vv[i] * all->vz[i]);
-	const vd zv = vfma(m->zv[i], v, m->zz[i] * all->zv[i]), vv = vfma(m->vv[i], v, m->vz[i] * all->zv[i]);
-	all->zz[i] = all->zz[i] + zz, all->vz[i] = all->vz[i] + vz;
-	all->zv[i] = all->zv[i] + zv, all->vv[i] = all->vv[i] + vv;
-}
-
-/* Increments of oscillators on a floor of one stiffness, over each segment of a sample and over the whole sample. */
-static void drive_map_fill(struct maps *maps, int m, const struct pound_bank *bank,
-                           const struct pound_bank_input *input)
-{
-	const struct segment *p = &maps->segment;
-	const int order = input->stretch->order;
-	struct force force;
-	for (int state = 0; state < 4; state++) {
-		const double unit[4] = {state == 0, state == 1, state == 2, state == 3};
-		double a[POUND_FLOOR_ROOM], size = 0;
-		vd *end_z = maps->drive_of_whole[m].z[state], *end_v = maps->drive_of_whole[m].v[state];
-		for (int i = 0; i < G; i++)
-			end_z[i] = end_v[i] = vsplat(0);
-		pound_floor_free_motion(unit, input->stretch->stiffness[m], input->damping, input->time_step, order,
-		                        a);
-		for (int k = 0; k <= order; k++)
-			size += fabs(a[k]);
-		const struct drive drive = drive_of(a, order, p, size);
-		for (int j = 0; j < p->n; j++) {
-			struct drive_map *map = &maps->drive_of_segment[m][j];
-			vd *z = map->z[state], *v = map->v[state];
-			force_fill(&force, bank->powers, &drive, p, j);
-			for (int i = 0; i < G; i++)
-				z[i] = v[i] = vsplat(0);
-			series_pass(p, &force, z, v);
-			for (int i = 0; i < G; i++) {
-				v[i] = v[i] / p->step;
-				passage_take(&maps->of_segment, i, &end_z[i], &end_v[i], z[i], v[i]);
-			}
-		}
-	}
-}
-
-/* All maps of a sample, for every stiffness of a stretch. */
-static void maps_fill(struct maps *maps, const struct pound_bank *bank, const struct group *g,
-                      const struct pound_bank_input *input, int segments)
-{
-	const double h = input->time_step;
-	segment_init(&maps->whole, g, h, 1);
-	segment_init(&maps->segment, g, h, segments);
-	passage_fill(&maps->of_segment, &maps->segment);
-	maps->of_whole = maps->of_segment;
-	for (int j = 1; j < segments; j++)
-		for (int i = 0; i < G; i++)
-			passage_append(&maps->of_whole, &maps->of_segment, i);
-	for (int m = 0; m < input->stretch->n_maps; m++)
-		drive_map_fill(maps, m, bank, input);
-	for (int i = 0; i < G; i++) {
-		const vd zero = vsplat(0), per = g->per_omega[i], per2 = per * per;
-		const vm fast = vless(vsplat(1), g->omega[i] * h);
-		maps->on_start[i] = vselect(fast, per2, zero);
-		maps->on_rate[i] = vselect(fast, per2 * per * (1 / h), zero);
-		maps->on_bound[0][i] = vselect(fast, per2, per * h);
-		maps->on_bound[1][i] = vselect(fast, per2 * (2 * g->damping), zero);
-		maps->on_bound[2][i] = maps->on_rate[i];
-		maps->miss_of_whole[i] = cubic_error_of(&maps->whole, g, i);
-	}
-}
-
-/* Lanes in which |z| may have a new maximum inside a whole sample h of free motion.
- *
- * Given    a  the drive: bounds A, A', A'', coefficients a and its rate at the start, by the elapsed fraction of the sample
- *
- * Slow oscillators, w h <= 1: as in risk_of_piece.  Fast ones follow the floor: with y = z + a/w^2
- *   y'' + 2 xi w y' + w^2 y = a''/w^2 + 2 xi a'/w     E of y grows by at most A''/(h w^3) + 2 xi A'/w^2, |z| <= E + A/w^2
- */
-LANE_INLINE vm risk_of_sample(const struct maps *m, const struct group *g, const struct state *s, int i,
-                              const struct pound_polynomial *a)
-{
-	const vd z = vfma(m->on_start[i], vsplat(a->c[0]), s->z[i]);
-	const vd v = vfma(m->on_rate[i], vsplat(a->c[1]), s->v[i] * g->per_omega[i]);
-	vd left = s->top[i];
-	for (int k = 0; k < 3; k++)
-		left = vfma(m->on_bound[k][i], vsplat(-a->bound[k]), left);
-	return vless(left * vabs(left), vfma(z, z, vfma(v, v, vsplat(SQUARES_LEAST))));
-}
-
-/* the contact's drive in free motion */
-static const struct pound_polynomial none = {{0}, {0}};
-
-/* one vector of a group over a whole sample */
-struct sample_place {
-	const struct pound_bank *bank;
-	const struct pound_bank_input *input;
-	const struct pound_floor_piece *piece;
-	const struct maps *maps;
-	const struct group *group;
-	int i;
-};
-
-/* The largest |z| of a sample, by its segments, in the lanes of risk; else top. */
-LANE_SHARED vd sample_top(const struct sample_place *at, enum pound_drive drive, vm risk, vd top)
-{
-	const int i = at->i;
-	const struct maps *maps = at->maps;
-	const struct state *s = &at->group->s[drive];
-	const bool driven = drive == POUND_DRIVE_FLOOR;
-	double room[POUND_FLOOR_ROOM];
-	const double *c, *bound = driven ? at->piece->floor.bound : none.bound;
-	struct force force;
-	struct stage stage = {&maps->segment, i, bound, s->z[i], s->v[i], s->z[i], s->v[i]};
-	const struct cubic_error miss = cubic_error_of(&maps->segment, at->group, i);
-	for (int j = 0; j < maps->segment.n; j++) {
-		const struct drive_map *map = &maps->drive_of_segment[at->piece->map][j];
-		vd z = vsplat(0), v = vsplat(0);
-		stage.z = stage.z1, stage.v = stage.v1;
-		for (int k = 0; k < 4 && driven; k++) {
-			z = vfma(map->z[k][i], vsplat(at->piece->state[k]), z);
-			v = vfma(map->v[k][i], vsplat(at->piece->state[k]), v);
-		}
-		passage_take(&maps->of_segment, i, &stage.z1, &stage.v1, z, v);
-		top = vselect(risk, vmax(top, vabs(stage.z1)), top);
-		const vm inside = risk_of_segment(&stage, &miss, top) & risk;
-		if (vany(inside)) {
-			const int order =
-			    pound_floor_drive(at->input->stretch, at->piece, drive, at->input->damping, room, &c);
-			const struct drive made = drive_of(c, order, &maps->segment, bound[0]);
-			force_fill(&force, at->bank->powers, &made, &maps->segment, j);
-			top = segment_top(&stage, &force, inside, top);
-		}
-	}
-	return top;
-}
-
-/* Integrates a group over a whole sample by maps; the contact's drive is 0.
- *
- * A new largest displacement is excluded by the cubic through the ends of the sample if all oscillators are slow; else by
- * risk_of_sample, and where this does not suffice, by the cubic.
- */
-LANE_INLINE void sample_move(struct sample_place *at, enum pound_drive drive, struct group *g)
-{
-	const bool driven = drive == POUND_DRIVE_FLOOR;
-	const struct pound_floor_piece *piece = at->piece;
-	const struct pound_polynomial *a = driven ? &piece->floor : &none;
-	const struct drive_map *map = &at->maps->drive_of_whole[piece->map];
-	struct state *s = &g->s[drive];
-	for (int i = 0; i < G; i++) {
-		vd z = vsplat(0), v = vsplat(0);
-#pragma GCC unroll 4
-		for (int k = 0; k < 4 && driven; k++) {
-			z = vfma(map->z[k][i], vsplat(piece->state[k]), z);
-			v = vfma(map->v[k][i], vsplat(piece->state[k]), v);
-		}
-		struct stage stage = {&at->maps->whole, i, a->bound, s->z[i], s->v[i], s->z[i], s->v[i]};
-		passage_take(&at->maps->of_whole, i, &stage.z1, &stage.v1, z, v);
-		vm risk = g->slow ? vmask((1u << W) - 1) : risk_of_sample(at->maps, g, s, i, a);
-		if (g->slow || __builtin_expect(vany(risk), 0)) {
-			s->top[i] = vselect(risk, vmax(s->top[i], vabs(stage.z1)), s->top[i]);
-			risk = risk & risk_of_segment(&stage, &at->maps->miss_of_whole[i], s->top[i]);
-			if (__builtin_expect(vany(risk), 0)) {
-				at->i = i;
-				s->top[i] = sample_top(at, drive, risk, s->top[i]);
-			}
-		}
-		s->z[i] = stage.z1;
-		s->v[i] = stage.v1;
-	}
-}
+#include "engine/floor/oscillator_maps.inl"
 
 /* ---- the bank ---- */
 
