@@ -155,7 +155,7 @@ static void each_expected(const struct field *field, char *text, size_t size)
 {
 	char number[160];
 	real_expected(field, number, sizeof number);
-	snprintf(text, size, "%s, or an array of one for each storey", number);
+	snprintf(text, size, "%s, or an array of one for each story", number);
 }
 
 /* Reads one number for all storeys, or an array of one for each. */
@@ -170,7 +170,7 @@ static void each_read(struct reader *r, const struct field *field, const cJSON *
 		return;
 	}
 	if (n != r->storeys && (r->storeys || n == 0 || n > most)) {
-		problems_add(r->problems, r->pointer, "must have %d elements, one for each storey, has %d", most, n);
+		problems_add(r->problems, r->pointer, "must have %d elements, one for each story, has %d", most, n);
 		return;
 	}
 	const cJSON *element;
