@@ -81,8 +81,26 @@ struct question {
 	const char *method, *rest, *type;
 	bool failed; /* HTTP 409 may be due to a study that has failed */
 	enum outcome (*print)(const struct wire_reply *reply, const struct options *options);
-	bool made; /* the server may compute before it answers: long timeout */
+	bool partial; /* an ended study may have an intermediate result */
+	bool made;    /* the server may compute before it answers: long timeout */
 };
+
+/* Whether an ended study may have an intermediate result. */
+static bool has_rows(struct wire *wire, const char *id)
+{
+	struct wire_reply reply = {0};
+	bool has = false;
+	char *path = answer_path(wire, id, "");
+	if (wire_send(wire, &(struct wire_request){.method = "GET", .path = path}, &reply) == OUTCOME_OK) {
+		struct reading *status = reading_open(reply.body, reply.n_body);
+		const char *kind = status ? reading_text(status, "/kind") : NULL;
+		has = kind && strcmp(kind, "sensitivity") == 0 && reading_number(status, "/runs_done") > 0;
+		reading_close(status);
+	}
+	wire_reply_free(&reply);
+	free(path);
+	return has;
+}
 
 static enum outcome ask(const struct options *options, const struct question *question)
 {
@@ -94,9 +112,13 @@ static enum outcome ask(const struct options *options, const struct question *qu
 	    options->argument, question->rest, &reply);
 	if (outcome == OUTCOME_OK)
 		outcome = question->print(&reply, options);
-	else if (reply.status == HTTP_CONFLICT)
+	else if (reply.status == HTTP_CONFLICT) {
 		outcome = question->failed && follow_failed(wire, options->argument) ? OUTCOME_STUDY_FAILED
 		                                                                     : OUTCOME_FAILED;
+		if (question->partial && outcome == OUTCOME_STUDY_FAILED && has_rows(wire, options->argument))
+			command_complain("results of the rows that are complete: pound results --partial %s",
+			                 options->argument);
+	}
 	wire_reply_free(&reply);
 	wire_close(wire);
 	return outcome;
@@ -128,19 +150,19 @@ static enum outcome print_result(const struct wire_reply *reply, const struct op
 /* `pound status ID` */
 enum outcome query_status(const struct options *options)
 {
-	return ask(options, &(struct question){"GET", "", NULL, false, print_status, false});
+	return ask(options, &(struct question){"GET", "", NULL, false, print_status, false, false});
 }
 
 /* `pound cancel ID`: prints the new status of the study. */
 enum outcome query_cancel(const struct options *options)
 {
-	return ask(options, &(struct question){"POST", "/cancel", NULL, false, print_status, false});
+	return ask(options, &(struct question){"POST", "/cancel", NULL, false, print_status, false, false});
 }
 
 /* `pound delete ID`: prints nothing. */
 enum outcome query_delete(const struct options *options)
 {
-	return ask(options, &(struct question){"DELETE", "", NULL, false, print_nothing, false});
+	return ask(options, &(struct question){"DELETE", "", NULL, false, print_nothing, false, false});
 }
 
 /* `pound wait ID`: prints the last status, however the study ended. */
@@ -209,14 +231,15 @@ enum outcome query_results(const struct options *options)
 {
 	// without --table the server makes the CSV; with --table this program does, as in `pound run'
 	bool csv = strcmp(options->format, "csv") == 0 && !options->table;
-	return ask(options, &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
-	                                       type_of(csv ? "csv" : "json"), true,
-	                                       csv ? print_bytes : print_result, options->partial});
+	return ask(options,
+	           &(struct question){"GET", options->partial ? "/results?partial=true" : "/results",
+	                              type_of(csv ? "csv" : "json"), true, csv ? print_bytes : print_result,
+	                              !options->partial, options->partial});
 }
 
 /* `pound samples ID`: prints the reply unchanged. */
 enum outcome query_samples(const struct options *options)
 {
-	return ask(options,
-	           &(struct question){"GET", "/samples", type_of(options->format), true, print_bytes, true});
+	return ask(options, &(struct question){"GET", "/samples", type_of(options->format), true, print_bytes,
+	                                       false, true});
 }

@@ -84,7 +84,7 @@ static void print_modes(const struct reading *result, const char *at)
 /* The storeys of a row and the floors above them, as means over the signals; the JSON has each signal. */
 static void print_storeys(const struct reading *result, const char *at)
 {
-	static const char *const columns[] = {"building", "storey",   "drift_m", "free_m", "drift/h",
+	static const char *const columns[] = {"building", "story",    "drift_m", "free_m", "drift/h",
 	                                      "shear_n",  "residual", "a_m_s2",  "a_free", NULL};
 	static const struct {
 		const char *list, *name;

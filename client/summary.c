@@ -22,7 +22,8 @@
 enum {
 	SCREEN = 24, /* lines */
 	INPUTS_MOST = 64,
-	PARAGRAPHS = 8,
+	PARAGRAPHS = 12,
+	GROUPED_MOST = 3, /* outputs whose groups are shown */
 	PATH_SIZE = 128,
 	COLUMNS = 4,      /* inputs that fit side by side with output names of any length */
 	INPUT_WIDTH = 14, /* longest input name beside both indices and a bar */
@@ -530,12 +531,69 @@ static char *tables_of(const struct reading *result)
 	return line;
 }
 
+/* Adds the names of outputs with a note, and the note; the caller frees it.  NULL: no output has one.  What few rows mean for an
+ * interval is reported by too_narrow. */
+static char *notes_of(const struct reading *result)
+{
+	const char *shown = NULL, *last = "";
+	char *line = NULL;
+	int others = 0;
+	for (int c = 0; c < reading_count(result, "/cells"); c++)
+		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
+			const char *note = reading_text(result, "/cells/%d/outputs/%d/note", c, o),
+			           *name = reading_text(result, "/cells/%d/outputs/%d/name", c, o);
+			if (!note || strncmp(note, "few rows hold", 13) == 0)
+				continue;
+			if (!shown)
+				line = command_text("Note on %s", last = name);
+			else if (strcmp(note, shown) != 0)
+				others++;
+			else if (strcmp(name, last) != 0)
+				line = command_append(line, ", %s", last = name);
+			shown = shown ? shown : note;
+		}
+	if (line)
+		line = command_append(line, ": %s.", shown);
+	return others ? command_append(line, " %d more notes: --table inputs", others) : line;
+}
+
+/* The indices of the groups of all outputs in one sentence, of a study without a sweep; the caller frees it.  NULL: none. */
+static char *groups_of(const struct reading *result)
+{
+	const int outputs = reading_count(result, "/cells/0/outputs");
+	char *line = NULL;
+	for (int o = 0; o < outputs && outputs <= GROUPED_MOST && reading_count(result, "/cells") == 1; o++) {
+		const int groups = reading_count(result, "/cells/0/outputs/%d/groups", o);
+		if (groups > 0 && !line) {
+			line = command_text("S1/ST of the groups");
+			for (int g = 0; g < groups; g++)
+				line = command_append(line, "%s %s", g ? "," : "",
+				                      reading_text(result, "/cells/0/outputs/%d/groups/%d/name", o, g));
+		}
+		for (int g = 0; g < groups; g++) {
+			char group[PATH_SIZE];
+			snprintf(group, sizeof group, "/cells/0/outputs/%d/groups/%d", o, g);
+			line = g ? command_append(line, ",")
+			         : command_append(line, "; %s:", reading_text(result, "/cells/0/outputs/%d/name", o));
+			for (int i = 0; i < INDICES; i++) {
+				const double value = reading_number(result, "%s/%s", group, INDEX_NAMES[i]);
+				line = command_append(line, isfinite(value) ? "%s%.2f" : "%s-", i ? "/" : " ", value);
+			}
+		}
+	}
+	return line;
+}
+
 /* Errors that more rows do not reduce, the widest interval, and where to find the other tables. */
 static void below_find(const struct reading *result, struct paragraphs *below)
 {
 	struct widest_interval widest;
 	const char *note = reading_text(result, "/accuracy/note"),
 	           *dominant = reading_text(result, "/accuracy/dominant");
+	char *const sentences[] = {groups_of(result), notes_of(result)};
+	for (int k = 0; k < 2; k++)
+		if (sentences[k])
+			paragraph_add(below, sentences[k]);
 	if (note && dominant && strcmp(dominant, "sampling") != 0)
 		paragraph_add(below, command_text("%s", note));
 	widest_interval_find(result, &widest);

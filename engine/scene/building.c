@@ -59,7 +59,7 @@ static const struct damping_form {
     {"rayleigh", "the damping ratio in two modes", rayleigh, true, false},
     {"stiffness", "proportional to the stiffness: the damping ratio in the first mode", by_stiffness, false,
      false},
-    {"storey", "of every storey as if it were an oscillator of its own", by_storey, false, true},
+    {"storey", "of every story as if it were an oscillator of its own", by_storey, false, true},
     {"modal", "the damping ratio in every mode", modal, false, false},
 };
 

@@ -6,15 +6,17 @@
 
 enum { BUILDINGS_MOST = 8, STOREYS_MOST = 50, MARKS_MOST = 200, PANEL_NARROWEST = 200 };
 
-/* A quantity of every storey, and its labels. */
+/* A quantity of every story or floor, and its labels. */
 struct quantity {
 	const char *list, *with, *without; /* members of a building and of its elements */
-	const char *label, *unit;
+	const char *of, *label, *unit;
+	double
+	    below; /* how far its mark is below the floor on top of the story, as a fraction of the story's height */
 };
 
 static const struct quantity QUANTITIES[] = {
-    {"storeys", "drift_max_m", "drift_max_free_m", "drift", "m"},
-    {"floors", "acceleration_max_m_s2", "acceleration_max_free_m_s2", "acceleration", "m/s²"},
+    {"storeys", "drift_max_m", "drift_max_free_m", "story", "drift", "m", 0.5},
+    {"floors", "acceleration_max_m_s2", "acceleration_max_free_m_s2", "floor", "acceleration", "m/s²", 0},
 };
 
 static const struct key KEYS[] = {
@@ -70,6 +72,41 @@ static double value_of(const cJSON *signals, int b, const struct quantity *quant
 	return mean_of(signals, b, quantity->list, i, free ? quantity->without : quantity->with);
 }
 
+/* The height of a story: its drift over its drift ratio, of a signal that moves it; NAN: none does. */
+static double height_of(const cJSON *signals, int b, int i)
+{
+	const cJSON *signal;
+	cJSON_ArrayForEach(signal, signals)
+	{
+		const cJSON *storey = cJSON_GetArrayItem(plot_member(building_of(signal, b), "storeys"), i);
+		const double height = plot_number(storey, "drift_max_m") / plot_number(storey, "drift_ratio_max");
+		if (isfinite(height) && height > 0)
+			return height;
+	}
+	return NAN;
+}
+
+/* The vertical axis of all panels: heights in m, or the numbers of stories if a height is not known. */
+struct vertical {
+	bool metres;
+	double top; /* of the tallest building */
+};
+
+static struct vertical vertical_of(const cJSON *signals)
+{
+	struct vertical up = {.metres = true};
+	int tallest = 0;
+	for (int b = 0; b < BUILDINGS_MOST; b++) {
+		double top = 0;
+		for (int i = 0; i < storeys_of(signals, b); i++)
+			top += height_of(signals, b, i);
+		up.metres &= isfinite(top);
+		up.top = fmax(up.top, top);
+		tallest = storeys_of(signals, b) > tallest ? storeys_of(signals, b) : tallest;
+	}
+	return up.metres ? up : (struct vertical){.top = tallest + 0.5};
+}
+
 /* The range of a quantity over all buildings, which share an axis so that they can be compared. */
 static struct range range_of(const cJSON *signals, const struct quantity *quantity)
 {
@@ -96,26 +133,30 @@ static void draw_building(struct plot *plot, const cJSON *signals, int b, const 
 {
 	const int n = storeys_of(signals, b);
 	const bool marked = is_marked(signals);
+	const struct vertical up = vertical_of(signals);
 	double value[STOREYS_MOST], x[STOREYS_MOST], y[STOREYS_MOST];
 	char label[PLOT_TEXT], title[PLOT_TEXT];
 	snprintf(label, sizeof label, "%s [%s]", quantity->label, quantity->unit);
 	snprintf(title, sizeof title, "building %d", b);
 	panel->title = title;
 	panel->x_label = label;
-	panel->y_label = "story";
-	panel->up = axis_between(0.5, n + 0.5);
-	panel->up.whole = true;
+	panel->y_label = up.metres ? "height [m]" : quantity->of;
+	panel->up = axis_between(up.metres ? 0 : 0.5, up.top);
+	panel->up.whole = !up.metres;
 	panel_draw(&plot->d, panel);
 	for (int free = 1; free >= 0; free--) {
+		double floor = 0;
 		for (int i = 0; i < n; i++) {
+			const double height = up.metres ? height_of(signals, b, i) : 1;
+			floor += height;
 			value[i] = value_of(signals, b, quantity, i, free);
 			x[i] = axis_at(&panel->across, value[i]);
-			y[i] = axis_at(&panel->up, i + 1);
+			y[i] = axis_at(&panel->up, floor - (up.metres ? quantity->below * height : 0));
 		}
 		draw_curve(&plot->d, &KEYS[free].pen, n, x, y);
 		for (int i = 0; i < n && marked; i++) {
 			char text[PLOT_TEXT], number[32];
-			snprintf(text, sizeof text, "story %d, %s: %s %s", i + 1, KEYS[free].name,
+			snprintf(text, sizeof text, "%s %d, %s: %s %s", quantity->of, i + 1, KEYS[free].name,
 			         draw_number(value[i], number), quantity->unit);
 			draw_mark(&plot->d, &(struct mark){.series = KEYS[free].mark.series, .hollow = free, .size = 3.5},
 			          x[i], y[i], text);

@@ -8,6 +8,7 @@
 #include "schema/figure/figure.h"
 #include "schema/result/result_json.h"
 #include "schema/study/fields.h"
+#include "schema/study/near_name.h"
 #include "schema/study/study_json.h"
 
 const struct api_fault_row api_faults[] = {
@@ -188,6 +189,22 @@ bool api_takes(const struct api_argument *argument, const char *value)
 		return true;
 	long number = strtol(value, &rest, 10);
 	return *value >= '0' && *value <= '9' && !*rest && number >= argument->min && number <= argument->max;
+}
+
+/* Test     unit_api: a_misspelt_choice_has_a_nearest_one */
+const char *api_nearest(const struct api_argument *argument, const char *value, char nearest[API_CHOICE_SIZE])
+{
+	int best = 1000;
+	for (const char *at = argument->choices; at && at[1]; at += 1 + strcspn(at + 1, " ")) {
+		char choice[API_CHOICE_SIZE];
+		snprintf(choice, sizeof choice, "%.*s", (int)strcspn(at + 1, " "), at + 1);
+		const int distance = near_name_distance(value, choice);
+		if (distance < best) {
+			best = distance;
+			memcpy(nearest, choice, sizeof choice);
+		}
+	}
+	return near_name(best, value) ? nearest : NULL;
 }
 
 /* The id in the 16 hexadecimal digits at `text`; -1: invalid. */

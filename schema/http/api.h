@@ -103,6 +103,10 @@ void api_names(int operation, const char *place, char *text, size_t size);
 /* The valid values of an argument, as text that follows "must be". */
 void api_expected(const struct api_argument *argument, char *text, size_t size);
 bool api_takes(const struct api_argument *argument, const char *value); /* whether a value is valid */
+enum { API_CHOICE_SIZE = 32 };
+/* The valid value that was probably meant, copied; NULL: not known. */
+const char *api_nearest(const struct api_argument *argument, const char *value,
+                        char nearest[API_CHOICE_SIZE]);
 
 /* The operation of a method and a decoded path, and the id in the path; `allow` lists the methods of the path.
  * HEAD counts as GET.  -1: no such path, or the path does not support the method. */

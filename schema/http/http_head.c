@@ -200,14 +200,17 @@ void head_header(struct head *head, const char *name, size_t n_name, const char 
 void head_argument(struct head *head, int operation, const char *name, const char *value)
 {
 	const struct api_argument *argument = api_argument(operation, name, "query");
-	char expected[128];
+	char expected[512];
 	if (*name && !argument) {
 		api_names(operation, "query", expected, sizeof expected);
 		head_refuse(head, API_BAD_REQUEST, false, "%.60s is not a query parameter of %s%s%s", name,
 		            api_operations[operation].path, *expected ? ", which has " : "", expected);
 	} else if (*name && !api_takes(argument, value)) {
 		api_expected(argument, expected, sizeof expected);
-		head_refuse(head, API_BAD_REQUEST, false, "%s must be %s", name, expected);
+		char choice[API_CHOICE_SIZE];
+		const char *nearest = api_nearest(argument, value, choice);
+		head_refuse(head, API_BAD_REQUEST, false,
+		            nearest ? "%s must be %s; did you mean %s?" : "%s must be %s", name, expected, nearest);
 	}
 }
 

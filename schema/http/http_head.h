@@ -40,7 +40,7 @@ struct head {
 	struct head_text prefer, accept;
 	struct head_text origin, site; /* site: Sec-Fetch-Site */
 	enum api_fault fault;          /* the first one found, API_NO_FAULT: none */
-	char detail[200];              /* a sentence about it */
+	char detail[640];              /* a sentence about it */
 	bool close;                    /* close the connection: the end of the request is uncertain */
 };
 

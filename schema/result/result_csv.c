@@ -145,6 +145,9 @@ struct place {
 	const cJSON *output;  /* of the cell */
 	const cJSON *contact; /* owner of the gaps: a contact of the cell, or the cell */
 	const cJSON *set;     /* of fragility curves */
+	const cJSON *signal;  /* of a row of buildings */
+	const cJSON *body;    /* of the signal: a building */
+	int building;         /* its index */
 	const cJSON *element; /* of the table's list */
 	int index;            /* of the element in the list */
 	int point;            /* in the element's curve */
@@ -256,6 +259,37 @@ static void put_signal(struct lines *lines, const struct place *at)
 	put_scalars(lines, member(signal, "end"), "end.");
 }
 
+static void put_count(struct lines *lines, const char *name, int count)
+{
+	const cJSON number = {.type = cJSON_Number, .valuedouble = count};
+	put(lines, "", name, &number);
+}
+
+/* A story of a building in a signal, with the floor above it. */
+static void put_storey(struct lines *lines, const struct place *at)
+{
+	const cJSON *floor = cJSON_GetArrayItem(member(at->body, "floors"), at->index);
+	put_cell(lines, at);
+	put(lines, "", "signal", member(at->signal, "index"));
+	put_count(lines, "building", at->building);
+	put_count(lines, "storey", at->index + 1);
+	put_scalars(lines, at->element, "");
+	put_scalars(lines, floor, "");
+	put_scalars(lines, member(floor, "end"), "end.");
+}
+
+/* A contact of a row of buildings in a signal. */
+static void put_row_contact(struct lines *lines, const struct place *at)
+{
+	const cJSON *levels = member(at->element, "levels");
+	put_cell(lines, at);
+	put(lines, "", "signal", member(at->signal, "index"));
+	put_count(lines, "contact", at->index);
+	put(lines, "", "left_level", cJSON_GetArrayItem(levels, 0));
+	put(lines, "", "right_level", cJSON_GetArrayItem(levels, 1));
+	put_scalars(lines, at->element, "");
+}
+
 /* An element of a list of a cell or of a contact: of gaps, or of modes. */
 static void put_contact(struct lines *lines, const struct place *at)
 {
@@ -310,7 +344,7 @@ static void put_record(struct lines *lines, const struct place *at)
 }
 
 /* The object that has the list of a table. */
-enum owner { OUTPUT, CONTACT, CELL, SET, RESULT };
+enum owner { OUTPUT, CONTACT, CELL, SIGNAL, BUILDING, SET, RESULT };
 
 /* The tables. */
 static const struct table {
@@ -334,6 +368,8 @@ static const struct table {
     {"gap_needed", CONTACT, put_needed, "gap_needed", NULL, NULL, true},
     {"signals", CONTACT, put_needed_signal, "gap_needed", "signals_m", NULL, false},
     {"signals", CELL, put_signal, "signals", NULL, NULL, false},
+    {"storeys", BUILDING, put_storey, "storeys", NULL, NULL, false},
+    {"contacts", SIGNAL, put_row_contact, "contacts", NULL, NULL, false},
     {"fragility", SET, put_curve, "curves", NULL, NULL, false},
     {"return_periods", SET, put_curve, "return_periods", NULL, NULL, false},
     {"modes", CELL, put_contact, "modes", NULL, NULL, false},
@@ -370,11 +406,30 @@ static void put_list(struct lines *lines, const struct table *table, struct plac
 		cJSON_ArrayForEach(at->element, list_of(table, owner)) put_element(lines, table, at);
 }
 
+/* Puts the lists of the signals of a cell, or of their buildings. */
+static void put_signal_lists(struct lines *lines, const struct table *table, struct place *at)
+{
+	cJSON_ArrayForEach(at->signal, member(at->cell, "signals"))
+	{
+		const cJSON *buildings = table->owner == BUILDING ? member(at->signal, "buildings") : NULL;
+		if (table->owner == SIGNAL)
+			put_list(lines, table, at, at->signal);
+		at->building = 0;
+		cJSON_ArrayForEach(at->body, buildings)
+		{
+			put_list(lines, table, at, at->body);
+			at->building++;
+		}
+	}
+}
+
 /* Puts the lists of a cell; a result without cells passes itself as the cell. */
 static void put_cell_lists(struct lines *lines, const struct table *table, struct place *at)
 {
 	if (table->owner == CELL)
 		put_list(lines, table, at, at->cell);
+	else if (table->owner == SIGNAL || table->owner == BUILDING)
+		put_signal_lists(lines, table, at);
 	else if (table->owner == OUTPUT)
 		cJSON_ArrayForEach(at->output, member(at->cell, "outputs")) put_list(lines, table, at, at->output);
 	else if (member(at->cell, "contacts"))

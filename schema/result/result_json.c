@@ -601,7 +601,8 @@ static void write_work(struct writer *w, const struct pound_study *study, const 
 	writer_end(w);
 	POUND_STAGES(X)
 	if (work->free_pair_runs.asked) {
-		X(free_pair_runs, "responses of both bodies together without pounding")
+		X(free_pair_runs, study->scene.n_buildings ? "responses of all buildings together without pounding"
+		                                           : "responses of both bodies together without pounding")
 	}
 	if (work->chain_runs.asked) {
 		X(chain_runs,

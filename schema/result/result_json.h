@@ -26,11 +26,13 @@ void result_estimate(struct writer *w, const char *name, const struct pound_esti
 void result_curves(struct writer *w, const struct pound_study *study, const struct pound_curve *curves);
 
 /* Tables of results; a kind of result has some of them: lists of every output with inputs, checks of a growing design; gaps of
- * every cell or contact, fragility curves; modes of buildings, signals, means and recorded ground motions. */
+ * every cell or contact, fragility curves; modes of buildings, signals, and of a row their stories and contacts; means and
+ * recorded ground motions. */
 // clang-format off
 #define RESULT_TABLES(X) \
 	X(inputs) X(second_order) X(closed) X(groups) X(ratios) X(conditional_means) X(stopping) \
-	X(pounding) X(gaps) X(rules) X(gap_needed) X(fragility) X(return_periods) X(modes) X(signals) X(outputs) X(records)
+	X(pounding) X(gaps) X(rules) X(gap_needed) X(fragility) X(return_periods) X(modes) X(signals) X(storeys) X(contacts) \
+	X(outputs) X(records)
 // clang-format on
 
 /* A result as CSV, from the JSON of result_to_json: the table of that name, empty if the result has none; NULL: one row

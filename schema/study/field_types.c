@@ -155,7 +155,7 @@ static void each_expected(const struct field *field, char *text, size_t size)
 {
 	char number[160];
 	real_expected(field, number, sizeof number);
-	snprintf(text, size, "%s, or an array of one for each storey", number);
+	snprintf(text, size, "%s, or an array of one for each story", number);
 }
 
 /* Reads one number for all storeys, or an array of one for each. */
@@ -170,7 +170,7 @@ static void each_read(struct reader *r, const struct field *field, const cJSON *
 		return;
 	}
 	if (n != r->storeys && (r->storeys || n == 0 || n > most)) {
-		problems_add(r->problems, r->pointer, "must have %d elements, one for each storey, has %d", most, n);
+		problems_add(r->problems, r->pointer, "must have %d elements, one for each story, has %d", most, n);
 		return;
 	}
 	const cJSON *element;
@@ -275,7 +275,9 @@ static void choice_expected(const struct field *field, char *text, size_t size)
 		                      field->choice(row));
 }
 
-/* The row of a choice, -1: invalid, and a problem with all names and the nearest one is added. */
+enum { CHOICES_SHOWN = 20 }; // more names make a problem unreadable
+
+/* The row of a choice, -1: invalid, and a problem with the names, if they are few, and the nearest one is added. */
 static bool choice_number(struct reader *r, const struct field *field, const cJSON *node, double *value)
 {
 	char expected[FIELDS_EXPECTED_SIZE];
@@ -283,7 +285,14 @@ static bool choice_number(struct reader *r, const struct field *field, const cJS
 	*value = row;
 	if (row >= 0)
 		return true;
-	choice_expected(field, expected, sizeof expected);
+	int n = 0;
+	while (field->choice(n))
+		n++;
+	if (n > CHOICES_SHOWN)
+		snprintf(expected, sizeof expected,
+		         "one of the %d names that schema/study.md and /v1/openapi.json list", n);
+	else
+		choice_expected(field, expected, sizeof expected);
 	const char *nearest = cJSON_IsString(node) ? nearest_choice(field->choice, node->valuestring) : NULL;
 	if (nearest)
 		reader_misspelt(r, expected, node, nearest);

@@ -221,6 +221,23 @@ int study_storeys_most(const struct pound_study *study, int building)
 	return storeys_extreme(study, building, -1);
 }
 
+bool study_storeys_known(const struct pound_study *study, int building, const struct problems *problems)
+{
+	char path[POINTER_SIZE], wall[POINTER_SIZE];
+	snprintf(path, sizeof path, "/buildings/%d/storeys", building);
+	snprintf(wall, sizeof wall, "/scene/buildings/%d/rigid_wall", building);
+	return study_check_known(study, path, problems) && !problems_at(problems, wall);
+}
+
+/* The same for every building of the row. */
+static bool all_storeys_known(const struct pound_study *study, const struct problems *problems)
+{
+	bool is = true;
+	for (int b = 0; b < study->scene.n_buildings; b++)
+		is &= study_storeys_known(study, b, problems);
+	return is;
+}
+
 /* ---- checks ---- */
 
 /* A building with a varied number of storeys cannot have arrays. */
@@ -240,8 +257,8 @@ static void check_arrays(const struct pound_study *study, int b, struct problems
 		const struct pound_each *each = (const struct pound_each *)(const void *)(building + all[k].offset);
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/scene/buildings/%d/%s", b, all[k].name);
-		if (each->n > 1)
-			problems_add(problems, pointer, "must be one number, as a sweep varies the number of storeys");
+		if (each->n > 1 && !problems_at(problems, pointer))
+			problems_add(problems, pointer, "must be one number, as a sweep varies the number of stories");
 	}
 }
 
@@ -253,6 +270,8 @@ static void check_level(const struct pound_study *study, int c, int side, double
 	const int b = contact->left_building + side;
 	char pointer[POINTER_SIZE];
 	snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels/%d", c, side);
+	if (!study_storeys_known(study, b, problems))
+		return;
 	const int least = study_storeys_least(study, b);
 	if (!study->scene.buildings[b].rigid_wall && level > least && !problems_at(problems, pointer))
 		problems_add(problems, pointer, "is above building %d, whose top is level %d, got %.15g", b, least,
@@ -279,7 +298,10 @@ static void check_levels(const struct pound_study *study, int c, struct problems
 				check_level(study, c, side, study->sweeps[s].values[k], problems);
 		for (int j = 0; j < study->n_inputs; j++) {
 			double low = 0, high = 0;
-			if (!pound_field_alike(study->inputs[j].field, field))
+			char distribution[POINTER_SIZE];
+			snprintf(distribution, sizeof distribution, "/inputs/%d/distribution", j);
+			if (!pound_field_alike(study->inputs[j].field, field) || problems_at(problems, distribution) ||
+			    problems_over(problems, distribution))
 				continue;
 			pound_distribution_support(&study->inputs[j].distribution, &low, &high);
 			check_level(study, c, side, high, problems);
@@ -300,7 +322,9 @@ static void check_model(const struct pound_study *study, int c, struct problems 
 		return;
 	snprintf(pointer, sizeof pointer, "%s/model", at);
 	for (int row = 0;
-	     row < POUND_SOLVERS && study->scene.contacts[c].own[offsetof(struct pound_contact, model)]; row++)
+	     row < POUND_SOLVERS && !problems_at(problems, "/kind") && !problems_at(problems, "/convergence") &&
+	     study->scene.contacts[c].own[offsetof(struct pound_contact, model)];
+	     row++)
 		if (study_check_solves(study, row) && !pound_solver_takes_row_force(row, pound_contact_force(model)))
 			problems_add(problems, pointer,
 			             "the solver \"%s\" cannot integrate the contact model \"%s\" between buildings",
@@ -328,11 +352,11 @@ static void check_contacts(const struct pound_study *study, struct problems *pro
 		const struct pound_row_contact *contact = &scene->contacts[c];
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/scene/contacts/%d/left_building", c);
+		if (problems_at(problems, pointer) || problems_over(problems, pointer))
+			continue;
 		if (contact->left_building >= scene->n_buildings - 1) {
-			if (!problems_at(problems, pointer))
-				problems_add(problems, pointer,
-				             "must be less than %d, the index of the last building, got %d",
-				             scene->n_buildings - 1, contact->left_building);
+			problems_add(problems, pointer, "must be less than %d, the index of the last building, got %d",
+			             scene->n_buildings - 1, contact->left_building);
 			continue;
 		}
 		snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels", c);
@@ -353,9 +377,11 @@ static void check_contacts(const struct pound_study *study, struct problems *pro
 static void check_place(const struct pound_study *study, const struct pound_storey_place *place,
                         const char *at, struct problems *problems)
 {
-	char pointer[POINTER_SIZE];
+	char pointer[POINTER_SIZE], wall[POINTER_SIZE];
 	snprintf(pointer, sizeof pointer, "%s/building", at);
-	if (problems_at(problems, at))
+	snprintf(wall, sizeof wall, "/scene/buildings/%d/rigid_wall", place->building);
+	if (problems_at(problems, pointer) || problems_over(problems, pointer) || problems_at(problems, wall) ||
+	    problems_over(problems, wall))
 		return;
 	if (place->building >= study->scene.n_buildings || study->scene.buildings[place->building].rigid_wall) {
 		problems_add(problems, pointer, "must be the index of a building that is not a rigid wall, got %d",
@@ -364,8 +390,9 @@ static void check_place(const struct pound_study *study, const struct pound_stor
 	}
 	const int least = study_storeys_least(study, place->building);
 	snprintf(pointer, sizeof pointer, "%s/storey", at);
-	if (place->storey > least)
-		problems_add(problems, pointer, "must be at most %d, the storeys of building %d%s, got %d", least,
+	if (place->storey > least && !problems_at(problems, pointer) &&
+	    study_storeys_known(study, place->building, problems))
+		problems_add(problems, pointer, "must be at most %d, the stories of building %d%s, got %d", least,
 		             place->building, storeys_sweep(study, place->building) ? " in every cell" : "",
 		             place->storey);
 }
@@ -377,26 +404,28 @@ static void check_places(const struct pound_study *study, struct problems *probl
 		problems_add(problems, "/places", "is only used with buildings");
 	if (!row && study->spectrum.place.storey)
 		problems_add(problems, "/spectrum/place", "is only used with buildings");
-	for (int k = 0; k < study->scene.n_places && row; k++) {
+	for (int k = 0; k < study->scene.n_places && row && !problems_over(problems, "/places"); k++) {
 		char at[POINTER_SIZE];
 		snprintf(at, sizeof at, "/places/%d", k);
 		check_place(study, &study->scene.places[k], at, problems);
 		for (int j = 0; j < k; j++)
 			if (memcmp(&study->scene.places[j], &study->scene.places[k], sizeof study->scene.places[k]) ==
 			        0 &&
-			    !problems_at(problems, at)) {
+			    !problems_at(problems, at) && !problems_over(problems, at)) {
 				problems_add(problems, at, "is the same as place %d", j);
 				break;
 			}
 	}
-	if (row && study->spectrum.place.storey && !problems_at(problems, "/spectrum"))
+	if (row && study->spectrum.place.storey && !problems_over(problems, "/spectrum"))
 		check_place(study, &study->spectrum.place, "/spectrum/place", problems);
 }
 
 /* Refuses outputs of rows that the study's solver cannot compute; solvers are never replaced silently. */
 static void check_solvers(const struct pound_study *study, struct problems *problems)
 {
-	for (int row = 0; row < POUND_SOLVERS && !problems_at(problems, "/solver"); row++)
+	const bool known = !problems_at(problems, "/solver") && !problems_at(problems, "/convergence") &&
+	                   !problems_at(problems, "/outputs");
+	for (int row = 0; row < POUND_SOLVERS && known; row++)
 		if (study_check_solves(study, row) && !pound_row_takes_solver(study, row))
 			problems_add(problems, "/solver/method",
 			             "the solver \"%s\" cannot compute accelerations and contact forces of buildings",
@@ -409,20 +438,20 @@ static void check_gaps(const struct pound_study *study, struct problems *problem
 	const bool separation = study->kind == POUND_KIND_SEPARATION;
 	bool asks = separation;
 	for (int o = 0; o < study->n_outputs; o++)
-		asks |= pound_output_has_contacts(study->outputs[o], &study->scene);
+		asks |= study->outputs[o] >= 0 && pound_output_has_contacts(study->outputs[o], &study->scene);
 	for (int b = 0; asks && b < study->scene.n_buildings && study->scene.n_contacts == 0; b++)
 		if (storeys_sweep(study, b) && !problems_at(problems, "/scene/contacts")) {
 			problems_add(problems, "/scene/contacts",
 			             "must list the contacts: their number would change with the swept number of "
-			             "storeys");
+			             "stories");
 			break;
 		}
-	if (separation && pound_row_contacts(&study->scene) == 0 && !problems_at(problems, "/scene/contact"))
+	if (separation && pound_row_contacts(&study->scene) == 0 && !problems_over(problems, "/scene/contact"))
 		problems_add(problems, study->scene.contact.present ? "/scene/buildings" : "/scene/contact",
 		             "kind \"%s\" needs a contact between buildings, as gaps are where contacts are",
 		             study_kind_name(study->kind));
 	if (separation && pound_row_contacts(&study->scene) > POUND_GAPS_OF_ROW_MAX &&
-	    !problems_at(problems, "/scene/contacts"))
+	    !problems_at(problems, "/scene/contacts") && all_storeys_known(study, problems))
 		problems_add(problems, "/scene/contacts",
 		             "kind \"%s\" takes at most %d contacts, this row has %d: list at most that many",
 		             study_kind_name(study->kind), POUND_GAPS_OF_ROW_MAX, pound_row_contacts(&study->scene));
@@ -438,7 +467,7 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 		     : pound_output_has_places(study->outputs[o], &study->scene) ? places
 		     : pound_output_has_ordinates(study->outputs[o])             ? study->spectrum.n
 		                                                                 : 1;
-	if (n > POUND_OUTPUTS_MAX)
+	if (n > POUND_OUTPUTS_MAX && !problems_at(problems, "/spectrum") && all_storeys_known(study, problems))
 		problems_exceed(problems, "/outputs", n, POUND_OUTPUTS_MAX,
 		                "needs %d outputs over all places and frequencies; the limit is %d", n,
 		                POUND_OUTPUTS_MAX);
@@ -454,18 +483,19 @@ static void check_outputs_number(const struct pound_study *study, struct problem
 void study_buildings_check(const struct pound_study *study, struct problems *problems)
 {
 	const struct pound_scene *scene = &study->scene;
-	if (problems_at(problems, "/scene/buildings") || problems_over(problems, "/scene/buildings"))
+	const bool kind = !problems_at(problems, "/kind");
+	if (problems_over(problems, "/scene/buildings") || problems_over(problems, "/scene/oscillators"))
 		return;
-	if (scene->n_buildings)
+	if (scene->n_buildings && kind)
 		check_solvers(study, problems);
 	for (int b = 0; b < scene->n_buildings; b++)
 		check_arrays(study, b, problems);
 	if (!problems_over(problems, "/scene/contacts") && scene->n_buildings)
 		check_contacts(study, problems);
 	check_places(study, problems);
-	if (scene->n_buildings && !problems_over(problems, "/scene/contacts"))
+	if (scene->n_buildings && kind && !problems_over(problems, "/scene/contacts"))
 		check_gaps(study, problems);
-	if (scene->n_buildings && !problems_at(problems, "/outputs") && !problems_at(problems, "/places"))
+	if (scene->n_buildings && kind && !problems_at(problems, "/outputs") && !problems_at(problems, "/places"))
 		check_outputs_number(study, problems);
 }
 
@@ -496,15 +526,15 @@ static const char *building_idle(const struct pound_study *study, const struct f
 	if (building->rigid_wall)
 		return "a rigid wall has no such field";
 	if (place.index >= 0 && place.index >= study_storeys_least(study, place.element))
-		return storeys_sweep(study, place.element) ? "the building has no such storey in every cell"
-		                                           : "the building has no such storey";
+		return storeys_sweep(study, place.element) ? "the building has no such story in every cell"
+		                                           : "the building has no such story";
 	if (strcmp(name, "stiffness_n_m") == 0 && !by_stiffness)
 		return "has no effect: frequency_hz is given";
 	if ((strcmp(name, "frequency_hz") == 0 || strcmp(name, "stiffness_profile") == 0) && by_stiffness)
 		return "has no effect: stiffness_n_m is given";
 	if (strcmp(name, "damping_ratio") == 0 && place.index >= 0 &&
 	    !pound_damping_takes_each(building->damping))
-		return "all storeys have one damping ratio with this form of damping";
+		return "all stories have one damping ratio with this form of damping";
 	if (!strstr(field->pattern, "/law/"))
 		return NULL;
 	if (!building->has_law)

@@ -11,6 +11,8 @@ void study_buildings_check(const struct pound_study *study, struct problems *pro
 /* Fewest and most storeys of a building in any cell. */
 int study_storeys_least(const struct pound_study *study, int building);
 int study_storeys_most(const struct pound_study *study, int building);
+/* Whether they are known in spite of the problems found. */
+bool study_storeys_known(const struct pound_study *study, int building, const struct problems *problems);
 
 /* Why varying a field of a row would change nothing; NULL: it may vary. */
 const char *study_row_idle(const struct pound_study *study, const struct field *field,

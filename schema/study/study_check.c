@@ -47,6 +47,34 @@ struct pound_field study_check_field(const char *path)
 	                            .storey = each ? place.index + 1 : 0};
 }
 
+/* Whether the members that decide whether varying a field has an effect are valid. */
+static bool effect_known(const struct pound_study *study, const struct field *field, struct field_place place,
+                         const struct problems *problems)
+{
+	static const struct {
+		const char *within;    /* start of the pattern of a field */
+		const char *decide[4]; /* members; %d is the element of the field's list */
+	} rows[] = {
+	    {"/scene/oscillators/", {"/scene/oscillators/%d"}},
+	    {"/scene/buildings/", {"/scene/buildings/%d"}},
+	    {"/scene/contacts/", {"/scene/contacts/%d", "/outputs"}},
+	    {"/scene/contact/", {"/scene/contact", "/scene/contacts", "/outputs"}},
+	    {"/scene/law/", {"/scene/law", "/scene/buildings", "/scene/oscillators"}},
+	    {"/scene/excitation/scale/", {"/scene/excitation/scale"}},
+	};
+	// which of them a scene has
+	bool is = !problems_over(problems, "/scene/oscillators") &&
+	          !problems_over(problems, "/scene/buildings") && !problems_over(problems, "/scene/contacts");
+	for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
+		for (int i = 0; fields_within(field, &rows[k].within, 1) && rows[k].decide[i]; i++) {
+			char pointer[POINTER_SIZE];
+			snprintf(pointer, sizeof pointer, rows[k].decide[i], place.element);
+			is &= !problems_at(problems, pointer);
+		}
+	const bool of_storey = fields_within(field, &rows[1].within, 1) && place.index >= 0;
+	return is && (!of_storey || study_storeys_known(study, place.element, problems));
+}
+
 static void check_path(const struct pound_study *study, const char *path, bool input, const char *pointer,
                        struct problems *problems)
 {
@@ -73,10 +101,8 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 		return;
 	else if (!fields_used(field, NULL, excitation, NULL))
 		problems_add(problems, pointer, "this field is not used by excitation \"%s\"", excitation);
-	else if (problems_at(problems, "/scene/law") || problems_at(problems, "/scene/oscillators") ||
-	         problems_at(problems, "/scene/contact") || problems_at(problems, "/scene/buildings") ||
-	         problems_at(problems, "/scene/contacts"))
-		return; // these members decide whether it has an effect
+	else if (!effect_known(study, field, place, problems))
+		return;
 	else if (study_idle(study, field, place))
 		problems_add(problems, pointer, "%s", study_idle(study, field, place));
 }
@@ -121,7 +147,7 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
 				break;
 			} else if (all[k].path && storeys_overlap(all[i].path, all[k].path)) {
-				problems_add(problems, pointer, "names a storey that /%s/%d names too", all[k].list,
+				problems_add(problems, pointer, "names a story that /%s/%d names too", all[k].list,
 				             all[k].index);
 				break;
 			}
@@ -253,6 +279,15 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 	}
 }
 
+/* Whether an invalid path may have been meant for a field: it names no other field, and is not near to the path of one. */
+static bool may_mean(const char *invalid, const char *path)
+{
+	char nearest[128];
+	struct field_place place;
+	return !fields_scene(invalid, &place) &&
+	       (!fields_nearest_path(invalid, nearest, sizeof nearest) || strcmp(nearest, path) == 0);
+}
+
 /* Whether a field's interval is known in spite of other problems: the field is valid, and so are inputs and sweeps of it. */
 bool study_check_known(const struct pound_study *study, const char *path, const struct problems *problems)
 {
@@ -265,8 +300,10 @@ bool study_check_known(const struct pound_study *study, const char *path, const 
 	for (int i = 0; i < n; i++) {
 		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
 		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
-		// an invalid path may have been meant for this field
-		if (!all[i].path || (!here && problems_at(problems, pointer)) || problems_over(problems, pointer))
+		if (!all[i].path || (problems_at(problems, pointer) && (here || may_mean(all[i].path, path))))
+			return false;
+		snprintf(pointer, sizeof pointer, "/%s/%d", all[i].list, all[i].index);
+		if (problems_over(problems, pointer))
 			return false;
 		snprintf(pointer, sizeof pointer, "/%s/%d/%s", all[i].list, all[i].index,
 		         all[i].name ? "distribution" : "values");
@@ -361,20 +398,62 @@ bool study_check_applies(const struct pound_study *study, int output)
 	return false;
 }
 
+/* Whether an output would apply if all bodies had one law. */
+static bool applies_with_a_law(const struct pound_study *study, int output)
+{
+	struct pound_scene scene = study->scene;
+	struct pound_building buildings[POUND_BUILDINGS_MAX];
+	for (int k = 0; k < POUND_OSCILLATORS; k++)
+		scene.oscillators[k].has_law = false;
+	for (int b = 0; b < scene.n_buildings; b++) {
+		buildings[b] = study->scene.buildings[b];
+		buildings[b].has_law = false;
+	}
+	scene.buildings = buildings;
+	scene.n_places = 0;
+	bool applies = false;
+	for (int row = 0; pound_law_name(row); row++) {
+		scene.law.type = row;
+		applies |= pound_output_applies(output, &scene);
+	}
+	return applies;
+}
+
+/* Whether the members that decide which bodies and contacts a scene has are valid. */
+static bool bodies_known(const struct problems *problems)
+{
+	static const char *const lists[] = {"/scene/oscillators", "/scene/oscillators/1/rigid_wall",
+	                                    "/scene/buildings", "/scene/contact"};
+	bool is = true;
+	for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++)
+		is &= !problems_over(problems, lists[k]);
+	return is;
+}
+
 static void check_outputs(const struct pound_study *study, struct problems *problems)
 {
-	// fields that decide which outputs a scene has
-	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/contact/model", NULL};
-	if (!all_known(study, needed, problems))
+	// an invalid law may be meant to be any
+	static const char *const needed[] = {"/law/type", "/oscillators/0/law/type", "/oscillators/1/law/type",
+	                                     NULL};
+	if (!bodies_known(problems))
 		return;
+	bool laws = all_known(study, needed, problems) && !problems_at(problems, "/places");
+	for (int b = 0; b < study->scene.n_buildings; b++) {
+		char law[POINTER_SIZE];
+		snprintf(law, sizeof law, "/buildings/%d/law/type", b);
+		laws &= study_check_known(study, law, problems);
+	}
 	for (int o = 0; o < study->n_outputs; o++) {
 		char pointer[POINTER_SIZE];
 		snprintf(pointer, sizeof pointer, "/outputs/%d", o);
+		if (problems_at(problems, pointer))
+			continue;
 		if (pound_output_observes(study->outputs[o], &study->scene) && !problems_at(problems, "/solver") &&
 		    !pound_solver_is_observed(study->solver.method))
 			problems_add(problems, pointer, "cannot be computed with the solver \"%s\", only with \"event\"",
 			             pound_solver_name(study->solver.method));
-		if (!study_check_applies(study, study->outputs[o]))
+		if (!study_check_applies(study, study->outputs[o]) &&
+		    (laws || !applies_with_a_law(study, study->outputs[o])))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
 			             pound_output_needs(study->outputs[o], &study->scene));
 	}
@@ -403,7 +482,7 @@ static void check_forces(const struct pound_study *study, struct problems *probl
 	static const char *const needed[] = {"/contact/model", NULL};
 	static const char pointer[] = "/scene/contact/model";
 	if (!all_known(study, needed, problems) || problems_at(problems, "/solver") ||
-	    problems_at(problems, "/convergence") || problems_at(problems, "/outputs"))
+	    problems_at(problems, "/convergence") || problems_at(problems, "/outputs") || !bodies_known(problems))
 		return;
 	for (int cell = 0; cell < study_cells(study) && !problems_at(problems, pointer); cell++) {
 		struct pound_scene scene;
@@ -529,46 +608,59 @@ static bool rows_known(const struct problems *problems)
 	return is;
 }
 
-/* Checks members against each other.
+/* Removes the values of sweeps that have problems, so that the cells are those of the other sweeps. */
+static void sweeps_drop_invalid(struct pound_study *study, const struct problems *problems)
+{
+	for (int s = 0; s < study->n_sweeps; s++) {
+		char pointer[POINTER_SIZE];
+		snprintf(pointer, sizeof pointer, "/sweep/%d", s);
+		if (problems_at(problems, pointer))
+			study->sweeps[s].n_values = 0;
+	}
+}
+
+/* Checks members against each other.  Each check runs if the members that it reads are valid, so that one request reports as many
+ * problems as possible and none that follows from another.
  *
  * Given    study     -         -       read, possibly with problems
- * Returns  problems  -         -       further problems are added
+ * Returns  study     -         -       without the values of invalid sweeps
+ *          problems  -         -       further problems are added
  *
  * Test     unit_study_cases, unit_study_check
  */
-void study_check(const struct pound_study *study, struct problems *problems)
+void study_check(struct pound_study *study, struct problems *problems)
 {
+	sweeps_drop_invalid(study, problems);
 	check_paths(study, problems);
 	check_names(study, problems);
-	if (problems_at(problems, "/kind"))
-		return;
-	if (!problems_at(problems, "/inputs") && !problems_at(problems, "/design"))
+	sweeps_drop_invalid(study, problems);
+	const bool kind = !problems_at(problems, "/kind");
+	if (kind && !problems_over(problems, "/inputs") && !problems_over(problems, "/design/order"))
 		check_order(study, problems);
 	check_ratios(study, problems);
 	check_groups(study, problems);
 	if (study->elsewhere) {
-		if (rows_known(problems))
+		if (kind && rows_known(problems))
 			study_size_check_rows(study, problems);
 		return;
 	}
-	// each check runs if the members that it reads are valid, so that one request reports as many problems as possible
 	check_supports(study, problems);
 	check_excitation(study, problems);
 	study_suite_check(study, problems);
-	if (problems_at(problems, "/sweep"))
-		return;
 	study_buildings_check(study, problems);
+	if (study_size_cells(study) > STUDY_CELLS_MAX && problems_at(problems, "/sweep"))
+		return;
 	if (study_size_cells(study) > STUDY_CELLS_MAX) {
 		problems_exceed(problems, "/sweep", study_size_cells(study), STUDY_CELLS_MAX,
 		                "needs %.15g cells; the limit is %d", study_size_cells(study), STUDY_CELLS_MAX);
 		return;
 	}
-	if (!problems_at(problems, "/outputs"))
-		check_outputs(study, problems);
-	check_forces(study, problems);
 	study_contact_check(study, problems);
-	if (!problems_at(problems, "/outputs") && !problems_at(problems, "/spectrum"))
-		study_spectrum_check(study, problems);
+	if (!kind)
+		return;
+	check_outputs(study, problems);
+	check_forces(study, problems);
+	study_spectrum_check(study, problems);
 	study_separation_check(study, problems);
 	if (rows_known(problems) && study_check_known(study, "/excitation/signals", problems) &&
 	    !problems_at(problems, "/convergence"))

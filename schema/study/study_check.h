@@ -7,7 +7,7 @@
 #include "schema/study/fields.h"
 
 /* Adds problems between members that are each valid. */
-void study_check(const struct pound_study *study, struct problems *problems);
+void study_check(struct pound_study *study, struct problems *problems);
 
 bool study_check_applies(const struct pound_study *study, int output); /* in at least one cell */
 

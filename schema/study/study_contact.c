@@ -132,7 +132,7 @@ const char *study_contact_idle(const struct pound_study *study, const char *memb
 	const struct stiffness_given given = {
 	    given_or_varied(study, "/contact/stiffness_n_m", contact->stiffness),
 	    given_or_varied(study, "/contact/hertz_stiffness_n_m1_5", contact->hertz_stiffness)};
-	bool reads = false, used = false;
+	bool reads = swept && !swept->n_values, used = reads; // an invalid sweep may be meant to be of any model
 	for (int k = 0; k < (swept ? swept->n_values : 1); k++) {
 		// invalid values are NAN or negative
 		const double row = swept ? swept->values[k] : contact->model;

@@ -252,6 +252,8 @@ static void read_design(struct reader *r, const struct field *field, const cJSON
 	const struct field *rows = fields_find("/design/rows");
 	if (!reader_object(r, field->pattern, node, base) || !r->kind || !fields_listed(rows->kinds, r->kind))
 		return;
+	if (problems_at(r->problems, "/design/method"))
+		return; // it decides which members are used
 	if (!pound_design_quasi_random(design->method))
 		unneeded(r, node, "randomisations", pound_design_name(design->method));
 	else if (!cJSON_GetObjectItemCaseSensitive(node, "rows"))

@@ -95,6 +95,8 @@ static void check_intensity(const struct pound_study *study, struct problems *pr
 	char values[POINTER_SIZE];
 	if (!path || problems_over(problems, "/sweep") || problems_at(problems, pointer))
 		return;
+	if (s < 0 && problems_at(problems, "/sweep"))
+		return; // one of them may be meant to have that path
 	if (s < 0) {
 		problems_add(problems, pointer, "must be the path of a sweep, such as \"/excitation/peak_m_s2\"");
 		return;

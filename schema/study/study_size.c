@@ -9,11 +9,17 @@
 
 enum { POINTER_SIZE = 64 };
 
+/* Values of a sweep.  An invalid sweep has none: its field keeps the value of the scene, which is one. */
+static int values_of(const struct pound_sweep *sweep)
+{
+	return sweep->n_values ? sweep->n_values : 1;
+}
+
 double study_size_cells(const struct pound_study *study)
 {
 	double product = 1.0;
 	for (int s = 0; s < study->n_sweeps; s++)
-		product *= study->sweeps[s].n_values;
+		product *= values_of(&study->sweeps[s]);
 	return product;
 }
 
@@ -134,6 +140,8 @@ void study_size_check(const struct pound_study *study, struct problems *problems
 	if (sampled && !problems_at(problems, "/scene/excitation/type") &&
 	    !problems_at(problems, "/design/signals"))
 		check_until(study, problems);
+	if (problems_at(problems, "/sweep"))
+		return; // the number of cells is not known
 	if (runs > most)
 		problems_exceed(problems, pointer, runs, most, "needs %.15g pounding runs; the limit is %d", runs,
 		                most);
@@ -197,7 +205,7 @@ double study_steps(const struct pound_study *study)
 double study_cell_sweep(const struct pound_study *study, int cell, int sweep)
 {
 	for (int s = study->n_sweeps - 1; s > sweep; s--)
-		cell /= study->sweeps[s].n_values;
+		cell /= values_of(&study->sweeps[s]);
 	return study->sweeps[sweep].values[cell % study->sweeps[sweep].n_values];
 }
 
@@ -209,7 +217,7 @@ void study_cell(const struct pound_study *study, int cell, struct pound_scene *s
 {
 	*scene = study->scene;
 	for (int s = 0; s < study->n_sweeps; s++)
-		if (study->sweeps[s].field.part == POUND_PART_SCENE)
+		if (study->sweeps[s].field.part == POUND_PART_SCENE && study->sweeps[s].n_values)
 			pound_scene_assign(scene, study->sweeps[s].field, study_cell_sweep(study, cell, s));
 }
 

@@ -63,7 +63,7 @@ void reader_ordinates(struct reader *r, const cJSON *document)
 	bool asked = asks_for_ordinates(r->study);
 	if (!r->kind || strcmp(r->kind, study_kind_name(POUND_KIND_SENSITIVITY)) != 0 || r->study->elsewhere)
 		return;
-	if (spectrum && !asked)
+	if (spectrum && !asked && !problems_at(r->problems, "/outputs"))
 		problems_add(r->problems, "/spectrum", "is not used without output \"floor_spectrum\"");
 	if (asked && !cJSON_GetObjectItemCaseSensitive(spectrum, "frequencies_hz"))
 		problems_add(r->problems, "/spectrum/frequencies_hz",
@@ -82,7 +82,7 @@ static double highest(const struct pound_spectrum *spectrum)
 
 /* Checks the spectrum against the rest of the study.
  *
- * Given    study      -     read; outputs and spectrum are valid
+ * Given    study      -     read, possibly with problems
  * Returns  problems   -     further problems are added
  *
  * Test     unit_study_cases
@@ -97,6 +97,9 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 		             "\"floor_spectrum\" has whole spectra");
 	if (!whole && !(asked && study->kind == POUND_KIND_SENSITIVITY))
 		return;
+	static const char frequencies[] = "/spectrum/frequencies_hz";
+	if (problems_at(problems, frequencies) || problems_over(problems, frequencies))
+		return;
 	const bool signals = study_check_known(study, "/excitation/signals", problems);
 	double least = 0, step = 0, most = highest(spectrum);
 	if (study_check_known(study, "/excitation/time_step_s", problems))
@@ -109,7 +112,8 @@ void study_spectrum_check(const struct pound_study *study, struct problems *prob
 		problems_add(problems, "/spectrum/frequencies_hz",
 		             "must have at most %d frequencies in a sensitivity study, has %d", POUND_ORDINATES_MAX,
 		             spectrum->n);
-	if (whole && spectrum->histories && signals && study_check_steps_known(study, problems) &&
+	if (whole && spectrum->histories && signals && !problems_at(problems, "/histories") &&
+	    study_check_steps_known(study, problems) &&
 	    study_samples(study) * study->scene.excitation.signals > STUDY_HISTORIES_MAX)
 		problems_exceed(problems, "/histories", study_samples(study) * study->scene.excitation.signals,
 		                STUDY_HISTORIES_MAX, "needs %.15g samples over all signals; the limit is %d",

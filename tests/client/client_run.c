@@ -368,6 +368,11 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	    {"paper_linear", OF_TWO, OF_EIGHT, "\n not shown: S1; --table inputs shows all\n"},
 	    {"paper_linear", OF_TWO, OF_SIXTEEN, " of 16 outputs; S1; --table inputs shows all\n"},
 	    {"auto_signals", "\"seed\"", "\"seed\"", "\nwith 3 signals the widest interval is predicted"},
+	    // groups and notes
+	    {"groups", "\"seed\"", "\"seed\"",
+	     "S1/ST of the groups right building, contact, ground motion; force_amplification:\n0.41/0.95, "
+	     "0.06/0.09, "},
+	    {"sensitivity_small", "\"max\": 1}", "\"max\": 1}", "\nNote on "},
 	    {"until", "\"seed\"", "\"seed\"", "every interval of S1 and ST has a half-width of at most 0.15"},
 	    {"sensitivity_small", "\"name\": \"f_2\"",
 	     "\"name\": \"frequency of the right building, fixed base\"", "    frequ...d base  S1"},

@@ -1,6 +1,7 @@
 /* Every subcommand that needs a server, against a poundd of its own. */
 #include <string.h>
 
+#include "schema/json/json_pointer.h"
 #include "tests/support/check.h"
 #include "tests/support/program.h"
 #include "tests/support/service.h"
@@ -77,6 +78,23 @@ static void a_cancelled_study_ends_wait_and_results_with_3(void **state)
 	expect_words(POUND("delete", id), 0, WORDS(""));
 }
 
+static void results_of_a_cancelled_study_name_the_partial_ones(void **state)
+{
+	char id[32];
+	bool ran = false;
+	(void)state;
+	submit("paper", false, id);
+	while (!ran) {
+		struct program_outcome status = POUND("status", id);
+		struct reading *reading = reading_open(status.out, status.n_out);
+		ran = reading_number(reading, "/runs_done") > 0;
+		reading_close(reading);
+		program_free(&status);
+	}
+	expect_words(POUND("cancel", id), 0, WORDS("\"status\": \"cancelled\""));
+	expect_words(POUND("results", id), 3, WORDS("pound results --partial", id));
+}
+
 static void a_deleted_study_is_gone_for_every_command(void **state)
 {
 	static const char *const commands[] = {"status", "wait", "results", "samples", "cancel", "delete"};
@@ -127,5 +145,6 @@ static void list_goes_page_by_page_from_the_newest(void **state)
 
 CHECK_MAIN(SERVED(a_study_that_has_succeeded_has_status_results_and_samples),
            SERVED(a_cancelled_study_ends_wait_and_results_with_3),
+           SERVED(results_of_a_cancelled_study_name_the_partial_ones),
            SERVED(a_deleted_study_is_gone_for_every_command),
            SERVED(an_id_of_the_user_s_invention_is_no_path), SERVED(list_goes_page_by_page_from_the_newest))

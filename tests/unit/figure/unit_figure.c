@@ -421,6 +421,28 @@ static void panels_of_a_sweep_say_what_all_of_them_share(void **state)
 	free(document);
 }
 
+static void buildings_stand_on_one_scale_of_height_in_metres(void **state)
+{
+	struct figure_source source = {0};
+	(void)state;
+	source.json = program_file("tests/cases/figures/heights.json", &source.length);
+	struct figure figure = drawn("heights", &source, &(struct figure_choice){0});
+	assert_non_null(figure.svg);
+	// 18 m and 24 m high: every panel goes up to 24 m
+	int labels = 0, ticks = 0;
+	for (const char *at = figure.svg; (at = strstr(at, ">height [m]<")); at++)
+		labels++;
+	for (const char *at = figure.svg; (at = strstr(at, ">15<")); at++)
+		ticks++;
+	assert_int_equal(labels, 4);
+	assert_int_equal(ticks, 4);
+	assert_null(strstr(figure.svg, ">story<"));
+	assert_non_null(strstr(figure.svg, "story 5, with pounding: "));
+	assert_non_null(strstr(figure.svg, "floor 8, without pounding: "));
+	free(figure.svg);
+	source_free(&source);
+}
+
 static void a_line_does_not_end_between_a_number_and_its_unit(void **state)
 {
 	static const struct {
@@ -613,6 +635,7 @@ CHECK_MAIN(cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
            cmocka_unit_test(what_has_no_value_says_so), cmocka_unit_test(a_force_is_drawn_for_each_contact),
            cmocka_unit_test(a_contact_in_time_has_a_mark_in_its_cell_alone),
            cmocka_unit_test(panels_of_a_sweep_say_what_all_of_them_share),
+           cmocka_unit_test(buildings_stand_on_one_scale_of_height_in_metres),
            cmocka_unit_test(a_line_does_not_end_between_a_number_and_its_unit),
            cmocka_unit_test(the_golden_figures_have_not_changed),
            cmocka_unit_test(what_is_no_figure_is_refused_with_a_reason),

@@ -4,6 +4,7 @@
 
 #include "schema/examples/examples.h"
 #include "schema/http/api.h"
+#include "schema/http/http_head.h"
 #include "schema/study/fields.h"
 #include "schema/study/study_json.h"
 #include "tests/support/check.h"
@@ -61,6 +62,24 @@ static void a_path_is_one_of_the_table_to_the_last_character(void **state)
 			fail_msg("%s %s: operation %d, '%s', id %lld", cases[i].method, cases[i].path, operation, allow,
 			         id);
 	}
+}
+
+static void a_misspelt_choice_has_a_nearest_one(void **state)
+{
+	const struct api_argument *table = api_argument(API_results, "table", "query");
+	char text[512], nearest[API_CHOICE_SIZE];
+	(void)state;
+	assert_string_equal(api_nearest(table, "inptus", nearest), "inputs");
+	assert_string_equal(api_nearest(table, "record", nearest), "records");
+	assert_null(api_nearest(table, "elephant", nearest));
+	assert_null(api_nearest(api_argument(API_list, "limit", "query"), "x", nearest));
+	// the whole list is in the answer
+	struct head head = {.fault = API_NO_FAULT};
+	head_argument(&head, API_results, "table", "inptus");
+	api_expected(table, text, sizeof text);
+	assert_non_null(strstr(head.detail, text));
+	assert_non_null(strstr(text, " records"));
+	assert_non_null(strstr(head.detail, "; did you mean inputs?"));
 }
 
 static void an_argument_takes_what_it_says(void **state)
@@ -287,6 +306,7 @@ static void both_refuse_what_is_misspelt_mistyped_or_missing(void **state)
 }
 
 CHECK_MAIN(cmocka_unit_test(a_path_is_one_of_the_table_to_the_last_character),
+           cmocka_unit_test(a_misspelt_choice_has_a_nearest_one),
            cmocka_unit_test(an_argument_takes_what_it_says),
            cmocka_unit_test(every_example_of_the_document_is_what_its_schema_says),
            cmocka_unit_test(every_reference_of_the_document_leads_somewhere),

@@ -219,6 +219,23 @@ static void each_contact_of_a_row_has_lines_of_its_own(void **state)
 	tabulates(row, "fragility", "/a,contact,intensity,gap_m\r\n1,1,/x,0.25\r\n");
 }
 
+static void stories_and_contacts_of_a_row_are_lines(void **state)
+{
+	(void)state;
+	static const char json[] =
+	    "{\"kind\": \"response\", \"signals\": [{\"index\": 3, \"buildings\": [{\"storeys\": "
+	    "[{\"drift_max_m\": 1}, "
+	    "{\"drift_max_m\": 2}], \"floors\": [{\"acceleration_max_m_s2\": 5, \"end\": {\"u_m\": 7}}, "
+	    "{\"acceleration_max_m_s2\": 6, \"end\": {\"u_m\": 8}}]}, {\"storeys\": [{\"drift_max_m\": 4}], "
+	    "\"floors\": []}], \"contacts\": [{\"left_building\": 0, \"levels\": [1, 1.5], \"contact_count\": "
+	    "9}]}]}";
+	tabulates(json, "storeys",
+	          "signal,building,storey,drift_max_m,acceleration_max_m_s2,end.u_m\r\n"
+	          "3,0,1,1,5,7\r\n3,0,2,2,6,8\r\n3,1,1,4,,\r\n");
+	tabulates(json, "contacts",
+	          "signal,contact,left_level,right_level,left_building,contact_count\r\n3,0,1,1.5,0,9\r\n");
+}
+
 static void a_line_that_lacks_a_column_leaves_it_empty(void **state)
 {
 	(void)state;
@@ -261,6 +278,7 @@ CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(every_list_of_a_study_of_separation_is_a_table),
            cmocka_unit_test(modes_of_buildings_are_a_table),
            cmocka_unit_test(each_contact_of_a_row_has_lines_of_its_own),
+           cmocka_unit_test(stories_and_contacts_of_a_row_are_lines),
            cmocka_unit_test(a_line_that_lacks_a_column_leaves_it_empty),
            cmocka_unit_test(a_cell_is_read_back_as_it_was_written),
            cmocka_unit_test(what_is_no_result_gives_no_table))

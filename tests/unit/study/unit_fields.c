@@ -106,6 +106,20 @@ static void a_path_names_one_field_of_the_scene(void **state)
 		assert_null(fields_scene(none[k], &place));
 }
 
+static void texts_are_in_american_spelling(void **state)
+{
+	(void)state;
+	for (int i = 0; i < fields_count; i++) {
+		char expected[2048];
+		fields_expected(&fields[i], expected, sizeof expected);
+		const char *const texts[] = {fields[i].text, fields[i].choice ? "" : expected};
+		for (int k = 0; k < 2; k++)
+			for (const char *at = texts[k]; at && (at = strstr(at, "storey")); at++)
+				if (at == texts[k] || at[-1] != '"') // a name of the contract stands in quotes
+					fail_msg("%s: %s", fields[i].pattern, texts[k]);
+	}
+}
+
 static void a_slip_of_the_pen_is_near_and_a_stranger_is_not(void **state)
 {
 	(void)state;
@@ -198,5 +212,6 @@ CHECK_MAIN(cmocka_unit_test(every_limit_between_members_stands_in_the_text_of_it
            cmocka_unit_test(every_row_stands_below_an_object_or_a_list),
            cmocka_unit_test(every_field_says_what_it_takes),
            cmocka_unit_test(a_path_names_one_field_of_the_scene),
+           cmocka_unit_test(texts_are_in_american_spelling),
            cmocka_unit_test(a_slip_of_the_pen_is_near_and_a_stranger_is_not),
            cmocka_unit_test(kind_excitation_and_solver_decide_what_is_used))
