@@ -449,13 +449,16 @@ static void print_stopping(const struct reading *result)
 /* CPU time at several numbers of rows. */
 static void print_cost(const struct reading *result)
 {
-	const char *before = "\n  CPU time: ";
-	if (!reading_has(result, "/timing"))
-		return;
-	for (int k = 0; k < reading_count(result, "/timing/rows"); k++, before = ", ")
-		printf("%s%.2g%s with %.0f%s", before, reading_number(result, "/timing/rows/%d/cpu_s", k),
-		       k ? "" : " s", reading_number(result, "/timing/rows/%d/rows", k), k ? "" : " rows");
-	putchar('\n');
+	char *sentence = command_text("CPU time:");
+	if (reading_has(result, "/timing"))
+		putchar('\n');
+	for (int k = 0; k < reading_count(result, "/timing/rows"); k++)
+		sentence = command_append(sentence, "%s %.2g%s with %.0f%s", k ? "," : "",
+		                          reading_number(result, "/timing/rows/%d/cpu_s", k), k ? "" : " s",
+		                          reading_number(result, "/timing/rows/%d/rows", k), k ? "" : " rows");
+	if (reading_count(result, "/timing/rows") > 0)
+		table_prose(INDENT, sentence);
+	free(sentence);
 }
 
 static void print_design(const struct reading *result)

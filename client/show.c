@@ -601,7 +601,7 @@ static bool print_all(const struct reading *result, const char *kind)
 
 /* Prints a result, or one table of it.
  *
- * Test     client_run: one_table_of_a_result_is_shown_by_its_name
+ * Test     client_tables: one_table_of_a_result_is_shown_by_its_name
  */
 static enum outcome show_table(const char *json, size_t length, const char *table)
 {

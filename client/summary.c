@@ -531,29 +531,59 @@ static char *tables_of(const struct reading *result)
 	return line;
 }
 
-/* Adds the names of outputs with a note, and the note; the caller frees it.  NULL: no output has one.  What few rows mean for an
- * interval is reported by too_narrow. */
+/* A note of an output without its sentences on few rows, which too_narrow reports, and on indices that the summary does not
+ * show; the caller frees it.  NULL: nothing is left. */
+static char *note_shown(const char *note)
+{
+	static const char *const left_out[] = {"few rows hold", "S2_excitation"};
+	char *shown = NULL;
+	while (note && *note) {
+		const char *next = strstr(note, "; ");
+		const int length = next ? (int)(next - note) : (int)strlen(note);
+		bool out = false;
+		for (size_t k = 0; k < sizeof left_out / sizeof left_out[0]; k++)
+			out |= strncmp(note, left_out[k], strlen(left_out[k])) == 0;
+		if (!out)
+			shown =
+			    shown ? command_append(shown, "; %.*s", length, note) : command_text("%.*s", length, note);
+		note = next ? next + 2 : NULL;
+	}
+	return shown;
+}
+
+/* Whether a list of names, separated by ", ", has a name. */
+static bool listed(const char *names, const char *name)
+{
+	const size_t length = strlen(name);
+	for (const char *at = names; (at = strstr(at, name)); at += length)
+		if ((at == names || at[-1] == ' ') && (at[length] == ',' || at[length] == '\0'))
+			return true;
+	return false;
+}
+
+/* The first note with the names of its outputs, and the number of outputs with another note; the caller frees it.  NULL: no
+ * output has a note. */
 static char *notes_of(const struct reading *result)
 {
-	const char *shown = NULL, *last = "";
-	char *line = NULL;
+	char *first = NULL, *names = NULL;
 	int others = 0;
 	for (int c = 0; c < reading_count(result, "/cells"); c++)
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
-			const char *note = reading_text(result, "/cells/%d/outputs/%d/note", c, o),
-			           *name = reading_text(result, "/cells/%d/outputs/%d/name", c, o);
-			if (!note || strncmp(note, "few rows hold", 13) == 0)
+			char *note = note_shown(reading_text(result, "/cells/%d/outputs/%d/note", c, o));
+			const char *name = reading_text(result, "/cells/%d/outputs/%d/name", c, o);
+			if (note && !first) {
+				first = note;
+				names = command_text("%s", name);
 				continue;
-			if (!shown)
-				line = command_text("Note on %s", last = name);
-			else if (strcmp(note, shown) != 0)
+			}
+			if (note && strcmp(note, first) != 0)
 				others++;
-			else if (strcmp(name, last) != 0)
-				line = command_append(line, ", %s", last = name);
-			shown = shown ? shown : note;
+			else if (note && !listed(names, name))
+				names = command_append(names, ", %s", name);
+			free(note);
 		}
-	if (line)
-		line = command_append(line, ": %s.", shown);
+	char *line = first ? command_text("Note on %s: %s.", names, first) : NULL;
+	free(first), free(names);
 	return others ? command_append(line, " %d more notes: --table inputs", others) : line;
 }
 
@@ -610,7 +640,7 @@ static void below_find(const struct reading *result, struct paragraphs *below)
 
 /* Prints the indices to quote, their uncertainty and its cause, and where to find the other tables.
  *
- * Test     client_run: a_table_without_a_name_is_a_summary_of_one_screen
+ * Test     client_tables: a_table_without_a_name_is_a_summary_of_one_screen
  */
 void summary_print(const struct reading *result)
 {

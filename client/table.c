@@ -243,7 +243,7 @@ static void print_block(const struct table *table, const struct layout *layout, 
 /* Prints the table aligned, folded into blocks below each other if it is too wide; columns without any value are
  * left out.
  *
- * Test     client_run: every_table_fits_a_terminal_of_80_columns
+ * Test     client_tables: every_table_fits_a_terminal_of_80_columns
  */
 void table_print(const struct table *table, int indent)
 {
