@@ -1,4 +1,4 @@
-/* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
+/* `pound run`: same bytes for any number of threads and by a server, same error messages, tables, a clean stop. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -37,7 +37,7 @@ static struct program_outcome run_on_server(const char *document)
 	return result;
 }
 
-/* Puts an example into a new file; the caller deletes it. */
+/* Writes an example to a new file; the caller deletes the file. */
 static void example_file(const char *name, char path[32])
 {
 	strcpy(path, "/tmp/pound-test-XXXXXX");
@@ -49,7 +49,7 @@ static void example_file(const char *name, char path[32])
 	program_free(&document);
 }
 
-/* The examples that are quick; the others are only validated. */
+/* Whether an example takes too long for this test; such an example is only validated. */
 static bool is_long(const char *name)
 {
 	return strncmp(name, "paper", 5) == 0;
@@ -65,7 +65,7 @@ static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by
 		if (is_long(name))
 			continue;
 		struct program_outcome document = POUND("example", name);
-		if (!strstr(document.out, "\"scene\"")) { // to be run elsewhere
+		if (!strstr(document.out, "\"scene\"")) { // a study of an external model
 			program_free(&document);
 			continue;
 		}
@@ -86,7 +86,7 @@ static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by
 	program_free(&names);
 }
 
-// documents with faults, and words that the list of them must hold
+// invalid documents, and words that the list of their problems must contain
 static const struct {
 	const char *text;
 	const char *words[4];
@@ -148,7 +148,7 @@ static void a_table_of_responses_has_each_value_of_a_sweep(void **state)
 	program_free(&document);
 }
 
-// steps as long as the period of an oscillator of 1 Hz are unstable
+// a step of one period of a 1 Hz oscillator is unstable
 #define UNSTABLE(values)                                                                                 \
 	"{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"          \
 	" \"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": " values "}],"                 \
@@ -189,7 +189,7 @@ static void a_study_without_any_result_ends_with_3_and_says_why(void **state)
 	program_free(&submit);
 }
 
-// words that the tables of an example hold, or what makes a slow one quick: fewer rows, fewer cells
+// words that the tables of an example must contain; `was` and `is`: a replacement that makes a slow example quick
 static const struct {
 	const char *example, *holds, *was, *is;
 } TABLES[] = {
@@ -208,7 +208,7 @@ static const struct {
     {"paper_linear", NULL, "\"rows\": 1000", "\"rows\": 60"},
     {"extremes", NULL, "[1e2, 1e4, 1e6, 1e8]", "[1e8]"}};
 
-/* Runs an example and fails where its tables are wider than a terminal. */
+/* Runs an example; fails if a line of its tables is longer than 80 bytes, or if its words are missing. */
 static void check_tables(const char *example, const char *study, const char *table)
 {
 	struct program_outcome run = program_run((const char *const[]){"pound", "run", "--format", "table", "-",
@@ -224,7 +224,7 @@ static void check_tables(const char *example, const char *study, const char *tab
 	program_free(&run);
 }
 
-/* Whatever a result holds: rows of buildings, errors of solvers, spectra, gaps.  Every example but those without a scene. */
+/* Every example with a scene: rows of buildings, errors of solvers, spectra, gaps. */
 static void every_table_fits_a_terminal_of_80_columns(void **state)
 {
 	struct program_outcome names = POUND("example", "--names");
@@ -248,8 +248,8 @@ static void every_table_fits_a_terminal_of_80_columns(void **state)
 	program_free(&names);
 }
 
-/* Four inputs of which two make a ratio, few rows, and an estimator of its own: a result with every table but that of
- * a design that grew. */
+/* Four inputs, two of them in a ratio, few rows, and an estimator other than the default: a result with every table
+ * except `stopping`, which only a growing design has. */
 static char *with_every_table(void)
 {
 	struct program_outcome document = POUND("example", "paper_linear");
@@ -265,7 +265,7 @@ static char *with_every_table(void)
 	return whole;
 }
 
-/* Of one signal that samples share there is no total index: no column of it, and no bars, which would look like zeros. */
+/* If the samples of a row share one signal, total indices are undefined: no column, and no bars (they would look like 0). */
 static void a_table_has_no_column_for_an_index_that_is_null_throughout(void **state)
 {
 	(void)state;
@@ -283,7 +283,7 @@ static void a_table_has_no_column_for_an_index_that_is_null_throughout(void **st
 	assert_null(strstr(table.out, "ST ["));
 	assert_null(strstr(table.out, "ST from 0 to 1"));
 	program_free(&table);
-	// the summary says so and why
+	// the summary gives the reason
 	table = program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
 	assert_non_null(strstr(table.out, "No index has a value.\nthe samples of a row share one signal"));
 	assert_null(strstr(table.out, "ST"));
@@ -322,7 +322,7 @@ static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 	free(study);
 }
 
-/* Fails unless a text fits on a screen of 24 lines of 80 columns, blank lines counted. */
+/* Fails unless a text, with its blank lines, fits on a screen of 24 lines of 80 columns. */
 static void check_screen(const char *what, char *text)
 {
 	int n = 0;
@@ -361,7 +361,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	     "                      ST  -0.03..0.54   0.20..0.43   0.36..0.85  -0.14..0.44\n"},
 	    {"spectrum_sensitivity", "\"seed\"", "\"seed\"", "floor_spectrum (8)"},
 	    {"two_storeys", "\"seed\"", "\"seed\"", " of 19 inputs, those with the smallest indices;"},
-	    // three outputs have both indices; eight have one, and it is said which is missing
+	    // three outputs: both indices; eight outputs: one index, and a line that names the other
 	    {"paper_linear", OF_TWO, OF_THREE, "\n force_amplification S1  0.36 +-0.05  0.0"},
 	    {"paper_linear", OF_TWO, OF_THREE, "\n                     ST  0.83 +-0.05  0.4"},
 	    {"paper_linear", OF_TWO, OF_EIGHT, "\n not shown: S1; --table inputs shows all\n"},
@@ -388,7 +388,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	}
 }
 
-/* `make run`: the interval of 1,000 rows is wider than that of 250, since few rows make the variance. */
+/* `make run`: the widest interval of 1000 rows is wider than that of 500 rows, because a few rows dominate the variance. */
 static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 {
 	static const char *const lines[] = {
@@ -398,7 +398,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 	    "Quote the interval of\n1000 rows.\n", "\nReport with figures and tables, for a browser: "};
 	(void)state;
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-	skip(); // 30,000 runs
+	skip(); // 30,000 runs are too slow
 #endif
 	struct program_outcome run = program_run(
 	    (const char *const[]){"sh", "-c", "exec tests/run-paper \"$POUND_BUILD\" 2>&1", NULL}, NULL);
@@ -420,7 +420,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 static void one_table_of_a_result_is_shown_by_its_name(void **state)
 {
 	static const struct {
-		const char *table, *shown, *csv; /* a word in it; the start of its CSV behind the swept field */
+		const char *table, *shown, *csv; /* text of the table; columns of its CSV after the swept field */
 	} tables[] = {
 	    {"inputs", "ST from 0 to 1", "output.name,output.mean,"},
 	    {"second_order", " S2\n", "output.name,input_1,input_2,S2,S2_low,S2_high\r\n"},
@@ -525,7 +525,7 @@ static void csv_has_as_many_cells_in_every_row(void **state)
 	}
 }
 
-/* Waits until a process has a handler for a signal of its own. */
+/* Waits until a process has a handler for a signal; false: not within 10 s. */
 static bool catches(pid_t pid, int number)
 {
 	char path[48], line[256];
@@ -569,7 +569,7 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 	unlink(study);
 }
 
-/* Threads of a process; 0: it has ended. */
+/* Number of threads of a process; 0: the process has ended. */
 static int threads_of(pid_t pid)
 {
 	char path[48];
@@ -605,7 +605,7 @@ static void ctrl_c_stops_histories_that_are_being_written(void **state)
 	char study[32], err[48], histories[48];
 	(void)state;
 	int file = mkstemp(strcpy(study, "/tmp/pound.XXXXXX"));
-	// 300 floors at one frequency take a moment, and their histories seconds
+	// spectra of 300 signals at one frequency are quick, their histories take seconds
 	dprintf(file, "{\"kind\": \"floor_spectrum\", \"histories\": true, \"spectrum\": {\"frequencies_hz\": "
 	              "[3]}, \"scene\": {"
 	              "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
@@ -616,7 +616,7 @@ static void ctrl_c_stops_histories_that_are_being_written(void **state)
 	pid_t pid = program_start(
 	    (const char *const[]){"pound", "run", "--threads", "2", "--samples", histories, study, NULL},
 	    "/dev/null", err);
-	// its two workers have come and gone; a sanitizer has a thread of its own
+	// wait until both worker threads have started and ended; a sanitizer adds a thread
 	const struct timespec moment = {.tv_nsec = 1000000};
 	for (int now = 1, most = 1; most < 3 || now > most - 2; nanosleep(&moment, NULL)) {
 		now = threads_of(pid);
@@ -646,7 +646,7 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 		assert_non_null(strstr(bar, "100 %"));
 		assert_true(n > 4 && strcmp(bar + n - 4, "\r\033[K") == 0);
 		for (char *line = strtok(bar, "\r"); line; line = strtok(NULL, "\r"))
-			// the escape takes three bytes and no column
+			// the escape sequence has three bytes and no width
 			assert_true(strncmp(line, "\033[K", 3) == 0 && strlen(line) - 3 < (size_t)widths[i]);
 		free(bar);
 	}
