@@ -12,7 +12,7 @@ static const char TOKEN[] = "correct-horse-battery-staple-0123456789";
 
 static void token_file(const struct service *service, char path[128])
 {
-	snprintf(path, 128, "%s/log", service->directory); // a name that is cleared away
+	snprintf(path, 128, "%s/log", service->directory); // service_free deletes all files of the folder
 	strcat(path, ".tokens");
 	FILE *file = fopen(path, "w");
 	assert_non_null(file);
