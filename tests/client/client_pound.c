@@ -1,4 +1,4 @@
-/* The command line without a server: usage, examples, and exit statuses when something is wrong. */
+/* The command line without a server: usage, examples, exit statuses of errors. */
 #include <netinet/in.h>
 #include <string.h>
 #include <sys/socket.h>

@@ -199,7 +199,7 @@ static void cancel(const struct service *service, const char *id)
 
 static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
 {
-	// a minute of one core
+	// a minute on one core
 	enum { SIGNALS_MANY = 500 };
 	struct service *service = *state;
 	char *study = service_study(SERVICE_ROWS, SIGNALS_MANY, SEED), id[17];

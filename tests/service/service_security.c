@@ -78,7 +78,7 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 	assert_int_equal(status_of(service, "GET", "/nowhere", right, NULL), 404);
 	// two Authorization headers are refused: a proxy may have checked the other one
 	assert_int_equal(status_of(service, "GET", "/version", wrong[6], right), 400);
-	assert_int_equal(status_of(service, "GET", "/version", right, "Authorization;"), 400); // an empty one
+	assert_int_equal(status_of(service, "GET", "/version", right, "Authorization;"), 400); // an empty header
 	strcat(right, " \t");
 	assert_int_equal(status_of(service, "GET", "/version", right, NULL), 200);
 	service_stop(service);
