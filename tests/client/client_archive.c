@@ -1,4 +1,4 @@
-/* client_archive.c - `pound archive` against a poundd of its own, checked by sha256sum, which is not ours. */
+/* client_archive.c - `pound archive` against a poundd started by the test, checked by sha256sum of the system. */
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -64,7 +64,7 @@ static void an_archive_has_everything_and_its_checksums_hold(void **state)
 	assert_string_equal(listed.out,
 	                    "SHA256SUMS\nresult.json\nsamples.csv\nstatus.json\nstudy.json\nversions.json\n5\n");
 	program_free(&listed);
-	// the bytes of the server
+	// the files have the bytes of the server
 	static const struct {
 		const char *name, *rest;
 	} files[] = {{"study.json", "request"}, {"result.json", "results"}, {"samples.csv", "samples"}};
@@ -85,7 +85,7 @@ static void an_archive_has_everything_and_its_checksums_hold(void **state)
 	assert_true(reading_number(versions, "/archive") == 1);
 	reading_close(versions);
 	free(text);
-	// what is damaged is found
+	// sha256sum finds a changed file
 	listed = shell("cd $1 && sed -i 's/0/1/' result.json && sha256sum --quiet -c SHA256SUMS");
 	assert_int_equal(listed.status, 1);
 	assert_non_null(strstr(listed.out, "result.json: FAILED"));
@@ -155,7 +155,7 @@ static void what_cannot_be_archived_leaves_nothing_behind(void **state)
 	program_expect(&outcome, 1);
 	assert_non_null(strstr(outcome.err, "No such file"));
 	program_free(&outcome);
-	// samples that are damaged end it half way
+	// damaged samples stop the archive, which leaves no files
 	service_stop(service);
 	service_change(service, "UPDATE block SET content = zeroblob(length(content))");
 	service_start(service, 1);
@@ -168,7 +168,7 @@ static void what_cannot_be_archived_leaves_nothing_behind(void **state)
 	outcome = shell("ls -A $(dirname $1)");
 	assert_string_equal(outcome.out, "");
 	program_free(&outcome);
-	// a folder that is there stays as it is
+	// an existing folder is not changed
 	assert_int_equal(mkdir(path, 0700), 0);
 	outcome = POUND("archive", "--url", url, id, path);
 	program_expect(&outcome, 1);

@@ -20,7 +20,7 @@ static const char STUDY[] =
     "-3.141592653589793, \"max\": 3.141592653589793}}, {\"name\": \"x3\", \"distribution\": {\"type\": "
     "\"uniform\", \"min\": -3.141592653589793, \"max\": 3.141592653589793}}], \"design\": {\"rows\": %d}}";
 
-/* A text in a new file; the caller deletes it. */
+/* Writes a text to a new file; the caller deletes the file. */
 static void file_of(const char *text, char path[PATH_SIZE])
 {
 	strcpy(path, "/tmp/pound-test-XXXXXX");
@@ -37,7 +37,7 @@ static void study_file(int rows, char path[PATH_SIZE])
 	file_of(text, path);
 }
 
-/* What the model of a manner gives for each line of the design, by files. */
+/* Indices of a stub model by files: `pound design`, an output for each line, `pound indices`; the caller frees them. */
 static char *by_files(const char *study, enum stub_manner manner, int replicates)
 {
 	struct program_outcome rows = program_run((const char *const[]){"pound", "design", study, NULL}, NULL);
@@ -74,7 +74,7 @@ static char *by_files(const char *study, enum stub_manner manner, int replicates
 	return json;
 }
 
-/* The same by `pound evaluate`, whose messages must have `said`. */
+/* Fails unless `pound evaluate` gives the bytes `wanted` and its messages contain `said`. */
 static void evaluated(const char *url, const char *study, const char *wanted, const char *said,
                       const char *const options[4])
 {
@@ -163,7 +163,7 @@ static void an_evaluation_that_is_killed_goes_on_and_gives_the_same_bytes(void *
 			usleep(200);
 		kill(pid, SIGKILL);
 		program_end(pid);
-		// what was written last may be cut anywhere
+		// a last line that was cut while it was written
 		if (k % 3 == 0) {
 			FILE *file = fopen(journal, "a");
 			fwrite(&extra, 1, 1, file);
@@ -175,8 +175,8 @@ static void an_evaluation_that_is_killed_goes_on_and_gives_the_same_bytes(void *
 	evaluated(model.url, study, wanted, "", (const char *const[4]){"--journal", journal, "--jobs", "8"});
 	assert_int_equal(lines_of(journal), 1 + RUNS);
 	doubled = *model.calls - RUNS;
-	assert_true(doubled <= 8 * kills); // those under way when it was killed
-	// nothing is left to do
+	assert_true(doubled <= 8 * kills); // the calls in progress at the kills
+	// with a complete journal the model is not called
 	evaluated(model.url, study, wanted, "", (const char *const[4]){"--journal", journal});
 	assert_int_equal(*model.calls, RUNS + doubled);
 	check_report("%d kills: 0 runs lost, %d made twice, the same bytes", kills, doubled);
@@ -313,7 +313,7 @@ static void rows_take_little_time_of_the_client(void **state)
 	unlink(study);
 }
 
-/* The server of UM-Bridge's own Python package, from a checkout in UMBRIDGE_DIR. */
+/* The server of UM-Bridge's Python package, from a checkout in UMBRIDGE_DIR; skipped without one. */
 static void a_model_in_python_gives_the_same_bytes(void **state)
 {
 	static const char text[] = "import math, sys, umbridge\n"
@@ -332,7 +332,7 @@ static void a_model_in_python_gives_the_same_bytes(void **state)
 	(void)state;
 	if (!folder)
 		skip();
-	// a port that was free a moment ago
+	// a free port: that of a stub model that has ended
 	struct stub_model free_port = stub_model_start(STUB_PLAIN);
 	strcpy(url, free_port.url);
 	snprintf(port, sizeof port, "%s", strrchr(url, ':') + 1);

@@ -1,4 +1,4 @@
-/* Figures as the server and the command line give them: the same bytes from both, each with its type and its policy. */
+/* Figures of the server and of the command line: same bytes, media types, security policy; reports. */
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ static void submit(const char *example, char id[32])
 	program_free(&document);
 }
 
-/* Puts what a command printed into a new file. */
+/* Writes the output of a command to a new file. */
 static void keep(struct program_outcome *outcome, char path[32])
 {
 	program_expect(outcome, 0);
@@ -35,7 +35,7 @@ static void keep(struct program_outcome *outcome, char path[32])
 	program_free(outcome);
 }
 
-/* A figure of one signal is drawn from the history of that signal. */
+/* Fails unless `signal=2` gives a figure of signal 2 and an unknown signal a 400. */
 static void expect_one_signal(const struct service *service, const char *link)
 {
 	struct answer answer = service_get(service, "%s?signal=2", link);
@@ -48,7 +48,8 @@ static void expect_one_signal(const struct service *service, const char *link)
 	answer_free(&answer);
 }
 
-/* The figures that a study lists, each drawn by the server and here. */
+/* Fails unless each figure that a study lists is drawn alike by the server and by the command line; returns their
+ * number. */
 static int figures_of(const struct service *service, const char *id, const char *result, const char *samples)
 {
 	struct answer answer = service_get(service, "/v1/studies/%s/figures", id);
@@ -68,7 +69,7 @@ static int figures_of(const struct service *service, const char *id, const char 
 		assert_string_equal(served.out, figure.body);
 		if (sampled)
 			expect_one_signal(service, reading_text(list, "/figures/%d/link", i));
-		// what is drawn from samples alone does not know the study's name
+		// a figure from a file of samples lacks the study's name
 		if (!sampled)
 			assert_string_equal(here.out, figure.body);
 		program_free(&served);
@@ -85,7 +86,7 @@ static void a_figure_of_a_file_has_the_bytes_of_the_server(void **state)
 	static const struct {
 		const char *example;
 		int figures;
-		bool sampled; /* one of them is drawn from samples */
+		bool sampled; /* one of the figures is drawn from samples */
 	} cases[] = {{"sensitivity_small", 1, false}, {"until", 4, false},          {"floor_spectrum", 3, true},
 	             {"response_sweep", 2, true},     {"unequal_heights", 3, true}, {"convergence", 1, false}};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -195,7 +196,7 @@ static void a_report_is_one_page_that_needs_nothing_else(void **state)
 	submit("floor_spectrum", id);
 	struct program_outcome served = POUND("report", id), printed = POUND("results", id);
 	program_expect(&served, 0);
-	// the study, the spectra and the history, which only the server's samples have
+	// the study, the spectra, and a history from the samples stored by the server
 	assert_non_null(strstr(served.out, "Floor response spectra"));
 	assert_non_null(strstr(served.out, "Motion and impacts"));
 	assert_non_null(strstr(served.out, "&quot;histories&quot;: true"));
@@ -228,7 +229,7 @@ static void keep_text(const char *text, char path[32])
 	assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
 }
 
-/* Fails unless a report of these files is refused with some words, and prints nothing. */
+/* Fails unless a report of these files is refused with a message that contains `words`, without output. */
 static void expect_refused(const char *result, const char *study, const char *words)
 {
 	struct program_outcome outcome = POUND("report", result, study);
@@ -263,7 +264,7 @@ static void a_report_has_no_other_study(void **state)
 	expect_refused(result, own, "is not the study of");
 	expect_refused(result, faulty, "got \"sensitivty\"");
 	expect_refused("0000000000000000", study, "leave out");
-	// a name and the form of a document are not its meaning
+	// a document with another name or layout is the same study
 	printed = POUND("report", result, renamed);
 	program_expect(&printed, 0);
 	assert_non_null(strstr(printed.out, "&quot;My "));
@@ -272,7 +273,7 @@ static void a_report_has_no_other_study(void **state)
 	unlink(result), unlink(study), unlink(other), unlink(renamed), unlink(own), unlink(faulty);
 }
 
-/* A figure beside a page is what the commands of the page make of an example. */
+/* Fails unless the commands of a page make the figure that is stored with the page. */
 static void figure_of_a_page(const char *page, const char *commands, const char *example, const char *figure,
                              const char *path)
 {
@@ -297,7 +298,7 @@ static void the_first_figure_of_the_readme_is_what_its_command_makes(void **stat
 {
 	(void)state;
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-	skip(); // 720,000 runs
+	skip(); // 720,000 runs are too slow
 #endif
 	figure_of_a_page("README.md",
 	                 "build/release/pound example paper | build/release/pound run - >campaign.json\n"

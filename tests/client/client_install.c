@@ -1,4 +1,4 @@
-/* What make install puts where, and that its manual pages and its unit are true. */
+/* The files of `make install`; the manual pages and the systemd unit agree with the programs. */
 #include <string.h>
 #include <unistd.h>
 
@@ -47,7 +47,7 @@ static char *installed_file(const char *name)
 
 static void the_programs_the_manual_and_the_unit_are_installed(void **state)
 {
-	static const char ranks[] = "bin/pound-worker-mpi\n", /* built with MPI=1 alone */
+	static const char ranks[] = "bin/pound-worker-mpi\n", /* only built with MPI=1 */
 	    want[] =
 	        "bin/pound\nbin/pound-worker\nbin/poundd\nlib/python3/dist-packages/pound.py\nlib/systemd/system/"
 	        "poundd.service\n"
@@ -72,7 +72,7 @@ static void the_programs_the_manual_and_the_unit_are_installed(void **state)
 	program_free(&version);
 }
 
-/* Whether a page has a text, as roff writes it. */
+/* Whether a manual page contains a text, escaped as in roff. */
 static bool has(const char *page, const char *text)
 {
 	char roff[1024], *out = roff;
@@ -176,14 +176,14 @@ static void the_unit_leaves_the_server_little_to_harm(void **state)
 	check_report("systemd-analyze security --offline=true: %.1f", exposure);
 	assert_true(exposure > 0 && exposure <= 2.0);
 	program_free(&verdict);
-	// every line of it is understood
+	// systemd accepts every line of the unit
 	verdict = program_run((const char *const[]){"systemd-analyze", "verify", "--man=no", path, NULL}, NULL);
 	program_expect(&verdict, 0);
 	assert_null(strstr(verdict.err, "poundd.service"));
 	program_free(&verdict);
 }
 
-/* Only the release is: the sanitizers have their own. */
+/* Release builds only: sanitizer builds are linked differently. */
 static void the_server_is_hardened_by_its_linker(void **state)
 {
 	char path[96];

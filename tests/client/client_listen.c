@@ -1,6 +1,6 @@
-/* `pound run --worker-listen': workers that others start, which come and go at any time, give the same bytes.
+/* `pound run --worker-listen': the same bytes with workers that are started separately and join or leave at any time.
  *
- * A worker is two processes: one that connects again and again, and its child that serves a connection. */
+ * A worker has two processes: one that connects repeatedly, and its child, which serves one connection. */
 #include <arpa/inet.h>
 #include <signal.h>
 #include <string.h>
@@ -16,17 +16,17 @@
 #include "tests/support/study_documents.h"
 
 enum {
-	ROWS = 16 * SERVICE_ROWS, /* of the study: two seconds of one core */
-	GONE_MS = 5000,           /* within which both processes of a worker are gone */
-	SEEN_S = 60,              /* within which what is waited for is to happen */
+	ROWS = 16 * SERVICE_ROWS, /* of the study: two seconds on one core */
+	GONE_MS = 5000,           /* limit for both processes of a worker to exit */
+	SEEN_S = 60,              /* limit for an expected text to appear in a file */
 };
 
 enum { STUDY, CHECKPOINT, OUT, ERR, TOKEN, OTHER_TOKEN, WORKER_ERR, N_FILES };
 
 static struct {
 	char directory[32];
-	char files[N_FILES][64]; /* in it */
-	char at[32];             /* that the program listens on */
+	char files[N_FILES][64]; /* in `directory` */
+	char at[32];             /* address that the program listens on */
 	char *reference;         /* the result without workers */
 	int n_blocks;
 } world;
@@ -85,7 +85,7 @@ static pid_t worker_start(int token)
 	                     "/dev/null", world.files[WORKER_ERR]);
 }
 
-/* The process of a worker that serves a connection; 0: there is none. */
+/* The process of a worker that serves a connection; 0: none. */
 static pid_t serving(pid_t worker)
 {
 	char path[64];
@@ -99,7 +99,7 @@ static pid_t serving(pid_t worker)
 	return child;
 }
 
-/* Ends a worker by a signal to the process that waits, and with it the one that serves. */
+/* Sends a signal to the process of a worker that connects; fails unless it and its child end. */
 static void worker_end(pid_t worker, int signal)
 {
 	const pid_t child = serving(worker);
@@ -120,7 +120,7 @@ static pid_t run_start(void)
 	                     world.files[OUT], world.files[ERR]);
 }
 
-/* Waits until a file has a text, while a run goes on (0: no run); false: the run has ended. */
+/* Waits until a file contains a text or a run ends (0: no run); false: the run has ended. */
 static bool seen(int file, const char *text, pid_t run)
 {
 	const double start = groups_now();
@@ -136,7 +136,8 @@ static bool seen(int file, const char *text, pid_t run)
 	return true;
 }
 
-/* Fails unless a run gave the reference, with a record for each block; the blocks that workers ran. */
+/* Fails unless a run gave the reference result and one record for each block; returns the number of blocks run by
+ * workers. */
 static int check_same(pid_t run)
 {
 	int n_once, n_more;
@@ -161,7 +162,7 @@ static void workers_that_others_start_join_and_leave_at_any_time(void **state)
 	(void)state;
 	srand(1);
 	for (int i = 0; i < n; i++) {
-		pid_t early = worker_start(TOKEN); // before there is anything to connect to
+		pid_t early = worker_start(TOKEN); // before the program listens
 		came++;
 		usleep((useconds_t)(rand() % 50000));
 		pid_t run = run_start(), late = 0;
@@ -170,7 +171,7 @@ static void workers_that_others_start_join_and_leave_at_any_time(void **state)
 			late = worker_start(TOKEN);
 			came++;
 			left += !groups_is_gone(run);
-			// the worker itself, or only the process that serves: then it comes again
+			// end the whole worker, or only its child: then the worker connects again
 			if (i % 2 == 0)
 				worker_end(early, i % 4 ? SIGKILL : SIGTERM), early = 0;
 			else {

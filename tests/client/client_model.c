@@ -1,4 +1,4 @@
-/* `pound design` and `pound indices`: a model of the user's own from its design to its indices. */
+/* `pound design` and `pound indices`: a user's model from its design to its indices. */
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
-/* Puts a text into a new file; the caller deletes it. */
+/* Writes a text to a new file; the caller deletes the file. */
 static void file_of(const char *text, char path[32])
 {
 	strcpy(path, "/tmp/pound-test-XXXXXX");
@@ -20,7 +20,7 @@ static void file_of(const char *text, char path[32])
 	fclose(file);
 }
 
-/* The example's document in a file, and the Ishigami function of its rows as CSV in another. */
+/* Writes the document of an example to a file, and the Ishigami function of its rows as CSV to another. */
 static void ishigami(char study[32], char outputs[32])
 {
 	struct program_outcome document = POUND("example", "design");
@@ -63,7 +63,7 @@ static void a_design_has_its_header_and_its_samples(void **state)
 static void indices_of_outputs_computed_elsewhere_come_as_json_table_and_csv(void **state)
 {
 	(void)state;
-	// closed form of the Ishigami function; four times the error over designs of n = 1000
+	// closed form of the Ishigami function; tolerance: four times the error over designs with n = 1000
 	static const double first[3] = {0.3139, 0.4424, 0.0}, total[3] = {0.5576, 0.4424, 0.2437};
 	char study[32], outputs[32];
 	ishigami(study, outputs);
@@ -96,7 +96,7 @@ static void given_samples_have_indices_without_a_study(void **state)
 	(void)state;
 	char study[32], inputs[32], outputs[32];
 	ishigami(study, outputs);
-	// rows of a design are no random samples, and that is reported
+	// rows of a design are not a random sample, which a note reports
 	struct program_outcome rows = POUND("design", study);
 	program_expect(&rows, 0);
 	file_of(rows.out, inputs);
@@ -235,7 +235,7 @@ static void what_is_wrong_is_said_and_ends_with_2(void **state)
 		program_expect(&refused, 2);
 		program_free(&refused);
 	}
-	// a study that is wrong is not laid at the door of its outputs
+	// problems of a study are reported for the study, not for the file of outputs
 	struct program_outcome swept = POUND("indices", "schema/examples/paper.json", outputs);
 	program_expect(&swept, 2);
 	assert_non_null(strstr(swept.err, "paper.json: 1 error\npound:   /sweep: "));
@@ -277,7 +277,7 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 	assert_int_equal(lines, 1 + 128 * 5);
 	assert_non_null(
 	    strstr(uneven.err, "pound: note: 1000 rows are not a power of two for each of 8 randomisations"));
-	// a study that can only be run elsewhere
+	// the study of an external model cannot be run by pound
 	assert_non_null(strstr(run.err, "`pound design'"));
 	assert_non_null(strstr(run.err, "`pound indices'"));
 	program_free(&run);

@@ -1,5 +1,5 @@
-/* client_packages.c - what users get besides `make install`: completion, a client without server libraries, source tarball,
- * Debian packages, a container's recipe. */
+/* client_packages.c - shell completion, a client without server libraries, the source tarball, Debian packages, the
+ * container's Dockerfile. */
 #include <string.h>
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-/* What a script of the shell prints; it finds the built programs, and sees its arguments as $1 and $2. */
+/* Runs a shell script with the built programs in its PATH and two arguments, $1 and $2. */
 static struct program_outcome shell(const char *script, const char *first, const char *second)
 {
 	char *build = realpath(getenv("POUND_BUILD") ? getenv("POUND_BUILD") : "build/release", NULL),
@@ -46,7 +46,7 @@ static bool has_line(const char *text, const char *line)
 static void every_shell_completes_commands_options_names_and_ids(void **state)
 {
 	static const struct {
-		const char *name, *script; /* prints the words that fit behind "$1", which ends with the one begun */
+		const char *name, *script; /* prints the completions of the last, incomplete word of "$1" */
 	} shells[] = {
 	    {"bash",
 	     "bash --norc -c 'source client/pound.bash; read -ra COMP_WORDS <<<\"$1\"; [[ $1 == *\" \" ]] && "
@@ -137,7 +137,7 @@ static void the_tarball_has_every_source_and_the_same_bytes_each_time(void **sta
 	program_free(&outcome);
 }
 
-/* Looks at the packages that make deb has left; builds them first in make soak, which takes minutes. */
+/* Checks the packages that `make deb` has left; `make soak` builds them first, which takes minutes. */
 static void packages_are_clean_and_their_program_gives_the_same_bytes(void **state)
 {
 	(void)state;
@@ -170,7 +170,7 @@ static void packages_are_clean_and_their_program_gives_the_same_bytes(void **sta
 		char path[96];
 		snprintf(path, sizeof path, "%s/usr/bin/pound", folder);
 		if (strstr("paper paper_linear convergence extremes nonlinear until", examples[i].name))
-			continue; // minutes, and their times are part of the result
+			continue; // these run for minutes, or their results contain times
 		const char *const command = strcmp(examples[i].name, "design") ? "run" : "design";
 		for (int k = 0; k < 2; k++) {
 			outcomes[k] =
@@ -198,7 +198,7 @@ static void packages_are_clean_and_their_program_gives_the_same_bytes(void **sta
 	program_free(&outcome);
 }
 
-/* Every library of the programs is in the container, every package of the Makefile that builds them is in its first stage,
+/* The container has every library of the programs, its first stage every package that the Makefile needs to build them,
  * and its health check distinguishes a running server from a missing one. */
 static void the_recipe_of_the_container_names_what_is_needed(void **state)
 {

@@ -1,4 +1,4 @@
-/* The command line without a server: usage, examples, and exit statuses when something is wrong. */
+/* The command line without a server: usage, examples, exit statuses of errors. */
 #include <netinet/in.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -100,7 +100,7 @@ static void a_study_that_cannot_be_read_ends_with_1(void **state)
 	}
 }
 
-/* A port where nobody listens, kept so by holding it. */
+/* A port without a listener, reserved by a bound socket. */
 static int silent_port(int *port)
 {
 	struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
@@ -128,12 +128,12 @@ static void a_server_that_is_not_there_ends_with_4(void **state)
 	struct program_outcome list = POUND("list", "--url", url);
 	program_expect(&list, 4);
 	program_free(&list);
-	// the document is not looked at before the server is asked
+	// the server is contacted before the document is checked
 	struct program_outcome submit =
 	    program_run((const char *const[]){"pound", "submit", "--wait", "--url", url, "-", NULL}, "{}");
 	program_expect(&submit, 4);
 	program_free(&submit);
-	// the same from the environment, and the option wins over it
+	// the address from the environment; the option overrides it
 	setenv("POUND_URL", url, 1);
 	list = POUND("list");
 	program_expect(&list, 4);

@@ -1,4 +1,4 @@
-/* client_python.c - the page client/python.md is run as one notebook, and what pound.py gives is what `pound` gives. */
+/* client_python.c - the page client/python.md runs as one notebook, and pound.py gives the same results as `pound`. */
 #include <string.h>
 #include <unistd.h>
 
@@ -13,7 +13,7 @@ static struct program_outcome python(const char *script)
 	return program_run((const char *const[]){PYTHON, "-", NULL}, script);
 }
 
-/* Sets what pound.py is found by; skips the test where there is no Python with NumPy. */
+/* Sets the environment by which Python finds pound.py and pound; skips the test without Python and NumPy. */
 static void prepare(void)
 {
 	const char *build = getenv("POUND_BUILD");
@@ -54,7 +54,7 @@ static void the_page_is_a_notebook_that_runs(void **state)
 	assert_true(blocks >= 6);
 	struct program_outcome outcome = python(script);
 	program_expect(&outcome, 0);
-	// what is printed: a line for each input, the faults of the study
+	// printed: a line for each input, the problems of a study
 	assert_non_null(strstr(outcome.out, "f_2: S1 0."));
 	assert_non_null(strstr(outcome.out, "/scene/oscillators/0/frequency_hz: must be"));
 	assert_non_null(strstr(outcome.out, "did you mean \"frequency_hz\"?"));
@@ -98,7 +98,7 @@ static void errors_of_command_and_server_name_every_fault(void **state)
 	program_free(&outcome);
 }
 
-/* Of indices, of gaps of oscillators and of each contact of a row; other kinds are refused by name. */
+/* Rows of indices, and of gaps of a pair and of each contact of a row; other kinds of result are refused by name. */
 static void a_table_has_the_rows_of_its_kind(void **state)
 {
 	(void)state;

@@ -1,6 +1,6 @@
 /* Worker groups of several ranks of MPI: the same bytes for any number of ranks, also when one is killed.
  *
- * Skipped where there is no mpirun or no pound-worker-mpi (make MPI=1). */
+ * Skipped without mpirun or without pound-worker-mpi (make MPI=1). */
 #include <fcntl.h>
 #include <signal.h>
 #include <string.h>
@@ -15,14 +15,14 @@
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
 enum {
-	ROWS = 16000,        /* of the study that is disturbed: two seconds of one core */
-	KILLED_AT_MS = 1000, /* at most, after the start of its processes */
+	ROWS = 16000,        /* of the disturbed study: two seconds on one core */
+	KILLED_AT_MS = 1000, /* latest kill after the start of the group's processes */
 	GONE_MS = 5000,
-	SHORT_STUDIES = 40, /* more than a group may know at a time */
+	SHORT_STUDIES = 40, /* more studies than a group holds at a time */
 };
 
 static struct {
-	char directory[32], study[64], checkpoint[64], pids[64], out[64], err[64]; /* files in it */
+	char directory[32], study[64], checkpoint[64], pids[64], out[64], err[64]; /* files in `directory` */
 	char *reference;
 	int n_blocks;
 } world;
@@ -35,7 +35,7 @@ static bool there_are_ranks(void)
 	return access(program, X_OK) == 0 && system("command -v mpirun >/dev/null") == 0;
 }
 
-/* A launcher of so many ranks, whose processes are added to a file: mpirun first. */
+/* A launcher of n_ranks ranks; writes the process ids of mpirun, then of the ranks, to `pids`. */
 static const char *launcher(int n_ranks)
 {
 	static char command[512];
@@ -123,7 +123,7 @@ static void one_two_and_four_ranks_give_the_same_bytes(void **state)
 	groups_gone(world.pids, GONE_MS);
 }
 
-/* Kills process `which` of a group of four ranks (0: mpirun) after some time, at which some start and others run. */
+/* Kills process `which` of a group of four ranks (0: mpirun) after a random time, during their start or later. */
 static void kill_one(int which, int *noticed, int *n_blocks)
 {
 	pid_t pids[GROUPS_PIDS_MAX];

@@ -1,7 +1,8 @@
-/* Every command of the README and of the other pages works as it stands there.
+/* Every command of the README and of the other pages works as printed; the pages agree with the program's tables, and
+ * the files, tests and headings that they name exist.
  *
- * All ```sh blocks of a page are one script, run in an empty folder with `sh -eu -c`, with two things changed:
- * a poundd of the test's own stands for the one that is started there, and the build under test for build/release. */
+ * All ```sh blocks of a page form one script, run in an empty folder with `sh -eu -c`, with two changes: the server is a
+ * poundd started by the test, and build/release is the build under test. */
 #include <glob.h>
 #include <math.h>
 #include <string.h>
@@ -12,11 +13,11 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-// the one command that is not run: the test has started its own server
+// commands that are not run: the test has started its own server
 static const char SERVER[] = "build/release/poundd ";
 
 static const struct {
-	const char *readme, *test; /* what the README says; the variable that holds what stands for it here */
+	const char *readme, *test; /* text of the page; environment variable with its replacement */
 } REPLACED[] = {
     {"http://127.0.0.1:8437", "POUND_URL"},
     {"build/release", "POUND_BUILD"},
@@ -36,7 +37,7 @@ static void put_replaced(FILE *out, const char *line)
 	}
 }
 
-/* README.md and the pages in the folders that they describe; globfree. */
+/* README.md and the pages in folders; the caller calls globfree. */
 static glob_t pages_all(void)
 {
 	glob_t pages;
@@ -46,7 +47,7 @@ static glob_t pages_all(void)
 	return pages;
 }
 
-/* The blocks of a page as one script, which says on stderr where it is; `blocks` counts them. */
+/* The blocks of a page as one script, which prints the line of each block to stderr; `blocks` counts them. */
 static char *script_of(const char *name, char *page, int *blocks)
 {
 	char *script = NULL;
@@ -75,7 +76,7 @@ static char *script_of(const char *name, char *page, int *blocks)
 	return script;
 }
 
-/* What stands for an absent member. */
+/* Default of a member as the page writes it. */
 static void default_of(const struct field *field, char *text, size_t size)
 {
 	bool found_otherwise = field->ends == FIELD_OPEN_MIN && field->absent == field->min;
@@ -94,7 +95,7 @@ static void default_of(const struct field *field, char *text, size_t size)
 		snprintf(text, size, "%.15g", field->absent);
 }
 
-/* "; only a, b" of names between spaces. */
+/* Appends "; only a, b", with `word` for "only", from names between spaces. */
 static void list_names(const char *word, const char *names, char *text, size_t size)
 {
 	size_t n = strlen(text);
@@ -123,7 +124,7 @@ static const char *solvers_of(const struct field *field, char *text, size_t size
 	return field->solvers ? text : NULL;
 }
 
-/* "; only a, b" of the contact models that read a member, or "; not c" if more do than do not. */
+/* Appends "; only a, b" with the contact models that read a member, or "; not c" if most of them read it. */
 static void models_of(const struct field *field, char *text, size_t size)
 {
 	static const char contact[] = "/scene/contact/";
@@ -143,7 +144,7 @@ static void models_of(const struct field *field, char *text, size_t size)
 
 static const char STUDY[] = "schema/study.md";
 
-/* Whether a member of one contact is one of the scene's contact too, of which the page has one line. */
+/* Whether a member of /scene/contacts is also a member of /scene/contact: the page has one line for both. */
 static bool of_contact(const struct field *field)
 {
 	static const char contacts[] = "/scene/contacts/*/";
@@ -154,7 +155,7 @@ static bool of_contact(const struct field *field)
 
 static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(void **state)
 {
-	static const char same[] = "/scene/oscillators/*/law/"; // one line, for the scene's law
+	static const char same[] = "/scene/oscillators/*/law/"; // listed once, with the scene's law
 	char *page = program_file(STUDY, NULL);
 	int missing = 0, listed = 0, lines = 0;
 	(void)state;
@@ -181,7 +182,7 @@ static void every_member_of_a_study_stands_in_the_docs_as_the_reader_takes_it(vo
 	assert_int_equal(missing, 0);
 	for (const char *row = page; (row = strstr(row, "\n| `/")); row++)
 		lines++;
-	assert_int_equal(lines, listed); // each has one line and no other
+	assert_int_equal(lines, listed); // one line per member, no other lines
 	free(page);
 }
 
@@ -231,7 +232,7 @@ static void every_row_of_the_engine_s_tables_stands_in_the_docs_with_its_line(vo
 	free(page);
 }
 
-/* The files that a page names; a name that is none fails the test. */
+/* Number of files that a page names; fails if one does not exist. */
 static int files_named(const char *page)
 {
 	static const char *const folders[] = {"engine/", "schema/", "server/", "client/", "tests/"};
@@ -241,7 +242,7 @@ static int files_named(const char *page)
 	for (char *name = strtok_r(text, "` \n|,;()[]#", &rest); name;
 	     name = strtok_r(NULL, "` \n|,;()[]#", &rest))
 		for (int i = 0; i < 5; i++)
-			// a folder alone, and forms such as unit_<file>.c, name no file
+			// forms such as unit_<file>.c name no file
 			if (strncmp(name, folders[i], strlen(folders[i])) == 0 && !strchr(name, '<')) {
 				name[strlen(name) - (name[strlen(name) - 1] == '.')] = '\0';
 				if (access(name, R_OK) != 0)
@@ -263,7 +264,7 @@ static void every_file_that_a_page_names_is_there(void **state)
 	globfree(&pages);
 }
 
-/* Whether a program of tests has a name in its own, or in that of one of its tests. */
+/* Whether a test program's name, or the name of one of its tests, contains `name`. */
 static bool test_there(const glob_t *programs, const char *name)
 {
 	bool there = false;
@@ -308,7 +309,7 @@ static void every_test_that_a_page_names_is_there(void **state)
 	globfree(&programs);
 }
 
-/* A heading as a link names it: small letters, - for a blank, nothing for other signs. */
+/* Whether a link's anchor names a heading: lower case, - for a space, other characters dropped. */
 static bool is_anchor(const char *heading, const char *anchor)
 {
 	for (; *heading && *heading != '\n'; heading++) {
@@ -323,7 +324,7 @@ static bool is_anchor(const char *heading, const char *anchor)
 	return *anchor == ')';
 }
 
-/* Every link to a heading of the same page or of another leads to one. */
+/* Every link to a heading, of the same or of another page, has a target. */
 static void every_link_between_the_pages_leads_to_a_heading(void **state)
 {
 	glob_t pages = pages_all();
@@ -364,7 +365,7 @@ static void the_usage_stands_in_the_readme_as_it_is_printed(void **state)
 	program_free(&help);
 }
 
-/* Runs the commands of a page in a folder of their own; how many blocks it has. */
+/* Runs the commands of a page in a temporary folder; returns the number of blocks. */
 static int commands_run(const char *name)
 {
 	int blocks;

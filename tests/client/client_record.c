@@ -1,4 +1,4 @@
-/* `pound record`: files of recorded ground motions, as a user meets them. */
+/* `pound record`: files of recorded ground motions. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static void files_are_shown_with_their_measures(void **state)
 	assert_int_equal(reading_count(records, "/records"), 2);
 	assert_string_equal(reading_text(records, "/records/0/format"), "peer");
 	assert_string_equal(reading_text(records, "/records/1/unit"), "cm/s2");
-	// the files hold the same numbers, in g and in cm/s2: all that is linear has the ratio of the units
+	// the files have the same numbers in g and in cm/s2, so spectra have the ratio of the units
 	for (int k = 0; k < 2; k++) {
 		const double psa = reading_number(records, "/records/0/spectrum/%d/psa_m_s2", k);
 		check_near(reading_number(records, "/records/1/spectrum/%d/psa_m_s2", k) * 980.665, psa, 1e-12 * psa);
@@ -31,8 +31,8 @@ static void files_are_shown_with_their_measures(void **state)
 	program_free(&shown);
 }
 
-/* The file begins with its largest acceleration: an oscillator far stiffer than the motion overshoots that jump by
- * exp(-pi xi/sqrt(1 - xi^2)). */
+/* The file begins with its largest acceleration, a jump from 0.  An oscillator much stiffer than the motion overshoots
+ * the jump by the fraction exp(-pi xi/sqrt(1 - xi^2)). */
 static void a_short_period_has_the_peak_of_a_jump(void **state)
 {
 	(void)state;
@@ -42,7 +42,7 @@ static void a_short_period_has_the_peak_of_a_jump(void **state)
 	program_expect(&shown, 0);
 	double psa;
 	assert_int_equal(sscanf(strchr(shown.out, '\n') + 1, "%*[^,],%*[^,],%lf", &psa), 1);
-	// meanwhile the acceleration changes by its slope times half a period
+	// tolerance: change of the acceleration in half a period
 	check_near(psa, 0.05 * (1 + exp(-pi * 0.05 / sqrt(1 - 0.05 * 0.05))), slope * period / 2);
 	program_free(&shown);
 }

@@ -1,4 +1,4 @@
-/* `pound run`: the same bytes whatever computes them, the same complaints as the server, and a clean stop. */
+/* `pound run`: same bytes for any number of threads and by a server, same error messages, a clean stop. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -37,7 +37,7 @@ static struct program_outcome run_on_server(const char *document)
 	return result;
 }
 
-/* Puts an example into a new file; the caller deletes it. */
+/* Writes an example to a new file; the caller deletes the file. */
 static void example_file(const char *name, char path[32])
 {
 	strcpy(path, "/tmp/pound-test-XXXXXX");
@@ -49,7 +49,7 @@ static void example_file(const char *name, char path[32])
 	program_free(&document);
 }
 
-/* The examples that are quick; the others are only validated. */
+/* Whether an example takes too long for this test; such an example is only validated. */
 static bool is_long(const char *name)
 {
 	return strncmp(name, "paper", 5) == 0;
@@ -65,7 +65,7 @@ static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by
 		if (is_long(name))
 			continue;
 		struct program_outcome document = POUND("example", name);
-		if (!strstr(document.out, "\"scene\"")) { // to be run elsewhere
+		if (!strstr(document.out, "\"scene\"")) { // a study of an external model
 			program_free(&document);
 			continue;
 		}
@@ -86,7 +86,7 @@ static void every_quick_example_gives_the_same_bytes_by_1_2_and_4_threads_and_by
 	program_free(&names);
 }
 
-// documents with faults, and words that the list of them must hold
+// invalid documents, and words that the list of their problems must contain
 static const struct {
 	const char *text;
 	const char *words[4];
@@ -148,7 +148,7 @@ static void a_table_of_responses_has_each_value_of_a_sweep(void **state)
 	program_free(&document);
 }
 
-// steps as long as the period of an oscillator of 1 Hz are unstable
+// a step of one period of a 1 Hz oscillator is unstable
 #define UNSTABLE(values)                                                                                 \
 	"{\"kind\": \"response\", \"solver\": {\"method\": \"central_difference\", \"step_s\": 1},"          \
 	" \"sweep\": [{\"path\": \"/oscillators/0/frequency_hz\", \"values\": " values "}],"                 \
@@ -233,7 +233,7 @@ static void ctrl_c_stops_a_run_without_a_result(void **state)
 	unlink(study);
 }
 
-/* Threads of a process; 0: it has ended. */
+/* Number of threads of a process; 0: the process has ended. */
 static int threads_of(pid_t pid)
 {
 	char path[48];
@@ -269,7 +269,7 @@ static void ctrl_c_stops_histories_that_are_being_written(void **state)
 	char study[32], err[48], histories[48];
 	(void)state;
 	int file = mkstemp(strcpy(study, "/tmp/pound.XXXXXX"));
-	// 300 floors at one frequency take a moment, and their histories seconds
+	// spectra of 300 signals at one frequency are quick, their histories take seconds
 	dprintf(file, "{\"kind\": \"floor_spectrum\", \"histories\": true, \"spectrum\": {\"frequencies_hz\": "
 	              "[3]}, \"scene\": {"
 	              "\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": 3.1}],"
@@ -280,7 +280,7 @@ static void ctrl_c_stops_histories_that_are_being_written(void **state)
 	pid_t pid = program_start(
 	    (const char *const[]){"pound", "run", "--threads", "2", "--samples", histories, study, NULL},
 	    "/dev/null", err);
-	// its two workers have come and gone; a sanitizer has a thread of its own
+	// wait until both worker threads have started and ended; a sanitizer adds a thread
 	const struct timespec moment = {.tv_nsec = 1000000};
 	for (int now = 1, most = 1; most < 3 || now > most - 2; nanosleep(&moment, NULL)) {
 		now = threads_of(pid);
@@ -310,7 +310,7 @@ static void the_bar_keeps_within_its_terminal_and_clears_its_line(void **state)
 		assert_non_null(strstr(bar, "100 %"));
 		assert_true(n > 4 && strcmp(bar + n - 4, "\r\033[K") == 0);
 		for (char *line = strtok(bar, "\r"); line; line = strtok(NULL, "\r"))
-			// the escape takes three bytes and no column
+			// the escape sequence has three bytes and no width
 			assert_true(strncmp(line, "\033[K", 3) == 0 && strlen(line) - 3 < (size_t)widths[i]);
 		free(bar);
 	}

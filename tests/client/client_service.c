@@ -1,4 +1,4 @@
-/* Every subcommand that needs a server, against a poundd of its own. */
+/* Every subcommand that needs a server, against a poundd started by the test. */
 #include <string.h>
 
 #include "schema/json/json_pointer.h"
@@ -8,7 +8,7 @@
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
-/* The id of a study handed in: an example, waited for or not. */
+/* Submits an example, with or without waiting for its end; `id` is the id of the study. */
 static void submit(const char *example, bool wait, char id[32])
 {
 	struct program_outcome document = POUND("example", example);
@@ -56,10 +56,10 @@ static void a_study_that_has_succeeded_has_status_results_and_samples(void **sta
 	assert_memory_equal(npy.out, "\x93NUMPY", 6);
 	program_free(&npy);
 	expect_words(POUND("cancel", id), 1, WORDS(id, "finished"));
-	// one that has none has not failed
+	// a study without samples gives the reason
 	submit("rigid_wall", true, id);
 	expect_words(POUND("samples", id), 1, WORDS("samples exist only for sensitivity studies"));
-	// those of a response are its contacts
+	// samples of a response study are its contacts
 	submit("response", true, id);
 	expect_words(POUND("samples", id), 0, WORDS("signal,time_s,duration_s,cell,contact", "impulse_n_s"));
 	expect_words(POUND("plot", "timeline", id), 0, WORDS("<svg", "Contacts in time"));

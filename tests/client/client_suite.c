@@ -30,7 +30,7 @@ static void a_suite_is_read_from_files_beside_the_study(void **state)
 	assert_int_equal(reading_count(result, "/suite/records"), 3);
 	assert_string_equal(reading_text(result, "/suite/records/0/name"), "nga_west2.AT2");
 	assert_string_equal(reading_text(result, "/suite/records/1/name"), "by another network");
-	// the files hold the same numbers, in g and in cm/s2
+	// the two files have the same numbers, one in g, one in cm/s2
 	check_near(reading_number(result, "/suite/records/1/pga_m_s2") * 980.665,
 	           reading_number(result, "/suite/records/0/pga_m_s2"), 1e-15);
 	reading_close(result);
@@ -65,7 +65,7 @@ static void files_that_the_server_has_are_not_sent_again(void **state)
 		program_expect(&sent, 0);
 		program_free(&sent);
 		char *now = service_text(service, created);
-		// a record that is sent again has a new time
+		// a record that is stored again would have a new time
 		if (first)
 			assert_string_equal(now, first);
 		free(first);
@@ -74,7 +74,7 @@ static void files_that_the_server_has_are_not_sent_again(void **state)
 	free(first);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM record"), 3);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study_record"), 6);
-	// the document that the server has is small
+	// the stored document is small: it names the records by their digests
 	assert_true(service_number(service, "SELECT max(length(content)) FROM document WHERE name = 'request'") <
 	            2000);
 }
@@ -133,10 +133,10 @@ static void from_files_to_a_figure_in_three_commands(void **state)
 	(void)state;
 	char folder[] = "/tmp/pound_suite_XXXXXX";
 	assert_non_null(mkdtemp(folder));
-	assert_int_equal(rmdir(folder), 0); // it is made with its files
+	assert_int_equal(rmdir(folder), 0); // `pound example` creates the folder
 	for (int again = 0; again < 2; again++) {
 		struct program_outcome made = POUND("example", "separation", folder);
-		program_expect(&made, again ? 1 : 0); // files are not overwritten
+		program_expect(&made, again ? 1 : 0); // existing files are not overwritten
 		assert_int_equal(strstr(made.err, "separation.json: File exists") != NULL, again);
 		assert_string_equal(made.out, "");
 		program_free(&made);
@@ -152,7 +152,7 @@ static void from_files_to_a_figure_in_three_commands(void **state)
 	assert_memory_equal(plot.out, "<svg ", 5);
 	program_free(&plot);
 
-	// as the samples in the document, but for the rounding of g in the files
+	// same result as with the samples in the document, except for the rounding of g in the files
 	struct program_outcome text = POUND("example", "separation");
 	program_expect(&text, 0);
 	struct program_outcome inside = program_run((const char *const[]){"pound", "run", "-", NULL}, text.out);
@@ -171,7 +171,7 @@ static void from_files_to_a_figure_in_three_commands(void **state)
 	program_free(&text);
 	program_free(&inside);
 
-	// and these are all the files
+	// the folder has no other files
 	for (int k = 1; k <= 20; k++) {
 		char name[32];
 		snprintf(name, sizeof name, "record_%02d.AT2", k);

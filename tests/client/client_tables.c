@@ -9,7 +9,7 @@
 
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
-// words that the tables of an example hold, or what makes a slow one quick: fewer rows, fewer cells
+// words that the tables of an example must contain; `was` and `is`: a replacement that makes a slow example quick
 static const struct {
 	const char *example, *holds, *was, *is;
 } TABLES[] = {
@@ -29,7 +29,7 @@ static const struct {
     {"paper_linear", NULL, "\"rows\": 1000", "\"rows\": 60"},
     {"extremes", NULL, "[1e2, 1e4, 1e6, 1e8]", "[1e8]"}};
 
-/* Runs an example and fails where its tables are wider than a terminal. */
+/* Runs an example; fails if a line of its tables is longer than 80 bytes, or if its words are missing. */
 static void check_tables(const char *example, const char *study, const char *table)
 {
 	struct program_outcome run = program_run((const char *const[]){"pound", "run", "--format", "table", "-",
@@ -45,7 +45,7 @@ static void check_tables(const char *example, const char *study, const char *tab
 	program_free(&run);
 }
 
-/* Whatever a result holds: rows of buildings, errors of solvers, spectra, gaps.  Every example but those without a scene. */
+/* Every example with a scene: rows of buildings, errors of solvers, spectra, gaps. */
 static void every_table_fits_a_terminal_of_80_columns(void **state)
 {
 	struct program_outcome names = POUND("example", "--names");
@@ -69,8 +69,8 @@ static void every_table_fits_a_terminal_of_80_columns(void **state)
 	program_free(&names);
 }
 
-/* Four inputs of which two make a ratio, few rows, and an estimator of its own: a result with every table but that of
- * a design that grew. */
+/* Four inputs, two of them in a ratio, few rows, and an estimator other than the default: a result with every table
+ * except `stopping`, which only a growing design has. */
 static char *with_every_table(void)
 {
 	struct program_outcome document = POUND("example", "paper_linear");
@@ -86,7 +86,7 @@ static char *with_every_table(void)
 	return whole;
 }
 
-/* Of one signal that samples share there is no total index: no column of it, and no bars, which would look like zeros. */
+/* If the samples of a row share one signal, total indices are undefined: no column, and no bars (they would look like 0). */
 static void a_table_has_no_column_for_an_index_that_is_null_throughout(void **state)
 {
 	(void)state;
@@ -104,7 +104,7 @@ static void a_table_has_no_column_for_an_index_that_is_null_throughout(void **st
 	assert_null(strstr(table.out, "ST ["));
 	assert_null(strstr(table.out, "ST from 0 to 1"));
 	program_free(&table);
-	// the summary says so and why
+	// the summary gives the reason
 	table = program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, document.out);
 	assert_non_null(strstr(table.out, "No index has a value.\nthe samples of a row share one signal"));
 	assert_null(strstr(table.out, "ST"));
@@ -143,7 +143,7 @@ static void a_table_shows_every_estimate_of_a_result_and_its_notes(void **state)
 	free(study);
 }
 
-/* Fails unless a text fits on a screen of 24 lines of 80 columns, blank lines counted. */
+/* Fails unless a text, with its blank lines, fits on a screen of 24 lines of 80 columns. */
 static void check_screen(const char *what, char *text)
 {
 	int n = 0;
@@ -182,7 +182,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	     "                      ST  -0.03..0.54   0.20..0.43   0.36..0.85  -0.14..0.44\n"},
 	    {"spectrum_sensitivity", "\"seed\"", "\"seed\"", "floor_spectrum (8)"},
 	    {"two_storeys", "\"seed\"", "\"seed\"", " of 19 inputs, those with the smallest indices;"},
-	    // three outputs have both indices; eight have one, and it is said which is missing
+	    // three outputs: both indices; eight outputs: one index, and a line that names the other
 	    {"paper_linear", OF_TWO, OF_THREE, "\n force_amplification S1  0.36 +-0.05  0.0"},
 	    {"paper_linear", OF_TWO, OF_THREE, "\n                     ST  0.83 +-0.05  0.4"},
 	    {"paper_linear", OF_TWO, OF_EIGHT, "\n not shown: S1; --table inputs shows all\n"},
@@ -214,7 +214,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	}
 }
 
-/* `make run`: the interval of 1,000 rows is wider than that of 250, since few rows make the variance. */
+/* `make run`: the widest interval of 1000 rows is wider than that of 500 rows, because a few rows dominate the variance. */
 static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 {
 	static const char *const lines[] = {
@@ -224,7 +224,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 	    "Quote the interval of\n1000 rows.\n", "\nReport with figures and tables, for a browser: "};
 	(void)state;
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
-	skip(); // 30,000 runs
+	skip(); // 30,000 runs are too slow
 #endif
 	struct program_outcome run = program_run(
 	    (const char *const[]){"sh", "-c", "exec tests/run-paper \"$POUND_BUILD\" 2>&1", NULL}, NULL);

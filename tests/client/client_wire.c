@@ -1,4 +1,4 @@
-/* Answers that poundd never gives, from a server that says what the test wrote down: pound must end, with a reason. */
+/* Answers that poundd never gives, from a server with scripted answers: pound must end and give a reason. */
 #include <netinet/in.h>
 #include <signal.h>
 #include <string.h>
@@ -17,11 +17,11 @@ enum { ANSWERS_MAX = 4 };
 
 struct script {
 	const char *answers
-	    [ANSWERS_MAX]; /* one for each connection, "": closed without a word; then the last one again */
+	    [ANSWERS_MAX]; /* one per connection, then the last one repeats; "": closed without an answer */
 	const char *arguments[6];
 	int status;         /* exit status of pound */
-	const char *said;   /* on stdout or stderr */
-	const char *unsaid; /* NULL: anything may be said */
+	const char *said;   /* text required on stdout or stderr */
+	const char *unsaid; /* text that must not appear; NULL: any text may */
 };
 
 static const struct script SCRIPTS[] = {
@@ -66,7 +66,7 @@ static const struct script SCRIPTS[] = {
      "id,status,progress,runs_done,runs_total,over_estimate,queue_position,expected_start,created,kind,"
      "name\n7,running,,3,",
      NULL},
-    // a line for each study; a name keeps both ends
+    // one line per study; a long name is shortened in the middle
     {{JSON("200 OK",
            "{\"studies\": [{\"id\": \"0123456789abcdef\", \"status\": \"succeeded\", \"progress\": 1, "
            "\"runs_done\": 90, \"created\": \"2026-01-02T03:04:05Z\", \"name\": \"one long name of a study, "
@@ -81,7 +81,7 @@ static const struct script SCRIPTS[] = {
      3,
      "the study is failed: too few rows",
      NULL},
-    // a server that goes away and comes back while a study is followed
+    // a server that stops answering for a while during `pound wait`
     {{JSON("200 OK", "{\"status\": \"running\"}"), "", JSON("503 Busy", "{}"),
       JSON("200 OK", "{\"status\": \"succeeded\"}")},
      {"wait", "1"},
@@ -90,7 +90,7 @@ static const struct script SCRIPTS[] = {
      "no answer"},
 };
 
-/* Reads one request up to the end of its header and, for a POST, whatever has come of its body. */
+/* Reads one request up to the end of its header, with the part of a body that arrives with it. */
 static void swallow(int connection)
 {
 	char bytes[4096] = "";
@@ -117,7 +117,7 @@ static void answer_all(int listener, const char *const answers[ANSWERS_MAX])
 				break;
 			sent += (size_t)k;
 		}
-		// the client may still be writing its body: let it finish before the connection is gone
+		// the client may still be writing its body: read it before the connection is closed
 		shutdown(connection, SHUT_WR);
 		char rest[256];
 		while (read(connection, rest, sizeof rest) > 0)
@@ -128,7 +128,7 @@ static void answer_all(int listener, const char *const answers[ANSWERS_MAX])
 	}
 }
 
-/* Starts the server that gives these answers, its address in POUND_URL. */
+/* Starts a server that gives these answers; sets POUND_URL to its address. */
 static pid_t stand_in(const char *const answers[ANSWERS_MAX])
 {
 	struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
@@ -195,7 +195,7 @@ static void a_bar_of_strange_numbers_stays_within_its_ends(void **state)
 	stand_down(pid);
 }
 
-/* A server that is reached through a proxy alone, and what the environment says of that; then whether it was asked. */
+/* A server that is reachable only through a proxy; exit status 4 if a variable of the environment excludes the proxy. */
 static void a_proxy_is_asked_but_where_the_environment_says_otherwise(void **state)
 {
 	static const struct {
@@ -209,7 +209,7 @@ static void a_proxy_is_asked_but_where_the_environment_says_otherwise(void **sta
 	for (size_t e = 0; e < sizeof environments / sizeof environments[0]; e++) {
 		pid_t pid = stand_in(answers);
 		setenv("http_proxy", getenv("POUND_URL"), 1);
-		setenv("POUND_URL", "http://pound.invalid", 1); // a name that is no host's (RFC 2606)
+		setenv("POUND_URL", "http://pound.invalid", 1); // a name without a host (RFC 2606)
 		setenv(environments[e].name, environments[e].value, 1);
 		struct program_outcome outcome = POUND("status", "1");
 		program_expect(&outcome, environments[e].status);

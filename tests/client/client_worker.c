@@ -1,7 +1,8 @@
-/* `pound run --launcher': the same bytes whatever runs blocks, and whatever happens to it.
+/* `pound run --launcher': the result has the same bytes whichever process runs the blocks, also when launchers fail and
+ * when workers or the coordinator are killed.
  *
- * A checkpoint has a record for each block that was taken as done, so its records are counted: a block without one is
- * lost, a block with two is doubled. */
+ * A checkpoint has one record for each block accepted as done.  The tests count records: a block without a record is
+ * lost, a block with two records is doubled. */
 #include <fcntl.h>
 #include <signal.h>
 #include <string.h>
@@ -19,20 +20,20 @@
 #define POUND(...) program_run((const char *const[]){"pound", __VA_ARGS__, NULL}, NULL)
 
 enum {
-	ROWS = 4 * SERVICE_ROWS, /* of the study that is disturbed: half a second of one core */
-	GONE_MS = 5000,          /* within which workers end after their coordinator */
+	ROWS = 4 * SERVICE_ROWS, /* of the disturbed study: half a second on one core */
+	GONE_MS = 5000,          /* limit for workers to exit after their coordinator */
 };
 
 static struct {
 	char directory[32];
-	char study[64], checkpoint[64], pids[64], out[64], err[64]; /* files in it */
-	char launcher[256]; /* a worker of one thread, which adds its process to pids */
+	char study[64], checkpoint[64], pids[64], out[64], err[64]; /* files in `directory` */
+	char launcher[256]; /* command of a worker with one thread; writes its process id to `pids` */
 	char *reference;    /* the result without workers */
 	int n_blocks;
-	size_t size; /* of its checkpoint */
+	size_t size; /* of the complete checkpoint [bytes] */
 } world;
 
-/* 0: it is not there. */
+/* Size of the checkpoint [bytes]; 0: no such file. */
 static size_t checkpoint_size(void)
 {
 	struct stat about;
@@ -45,7 +46,7 @@ static struct program_outcome run_with(const char *launcher, const char *launche
 	             world.checkpoint, world.study);
 }
 
-/* Fails unless the run gave the reference, with a record for each block. */
+/* Fails unless the run gave the reference result and its checkpoint has one record for each block. */
 static void check_same(struct program_outcome *outcome)
 {
 	int n_once, n_more;
@@ -97,7 +98,7 @@ static int teardown(void **state)
 	return rmdir(world.directory);
 }
 
-/* The examples that are quick. */
+/* Whether an example takes too long for this test. */
 static bool is_long(const char *name)
 {
 	return strncmp(name, "paper", 5) == 0;
@@ -119,7 +120,7 @@ static void every_example_gives_the_same_bytes_with_any_number_of_groups(void **
 		struct program_outcome alone = POUND("run", "--threads", "1", world.out);
 		program_expect(&alone, 0);
 		service_timeless(alone.out);
-		const bool stays = strncmp(name, "convergence", 11) == 0; // CPU times are among its results
+		const bool stays = strncmp(name, "convergence", 11) == 0; // its result contains CPU times: no workers
 		for (int i = 0; i < 2; i++) {
 			struct program_outcome outcome = POUND("run", "--threads", "1", "--launcher", world.launcher,
 			                                       "--launchers", launchers[i], world.out);
@@ -151,7 +152,7 @@ static pid_t run_start(const char *launcher, const char *launchers)
 	                     world.out, world.err);
 }
 
-/* The result of a run that was started, once it has ended. */
+/* Waits for the end of a run; returns its outcome. */
 static struct program_outcome run_end(pid_t pid)
 {
 	struct program_outcome outcome = {.status = program_end(pid)};
@@ -160,7 +161,7 @@ static struct program_outcome run_end(pid_t pid)
 	return outcome;
 }
 
-/* Waits until the checkpoint of a run has grown to a size; false: the run has ended. */
+/* Waits until the checkpoint of a run has at least this size; false: the run has ended. */
 static bool grown(pid_t pid, size_t size)
 {
 	while (checkpoint_size() < size && !groups_is_gone(pid))
@@ -203,9 +204,9 @@ static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end
 	unlink(world.checkpoint);
 	while (kills < n || finished == 0) {
 		unlink(world.pids);
-		unlink(world.out); // the result, once it is there
+		unlink(world.out); // a result of the previous run
 		pid_t pid = run_start(world.launcher, "2");
-		// some four times a study; one with no block yet is killed, too
+		// about four kills per study, some of them before its first block
 		const size_t more = (size_t)rand() % (world.size / 2);
 		if (kills < n && grown(pid, checkpoint_size() + more) && kill(pid, SIGKILL) == 0)
 			kills++;
@@ -230,16 +231,17 @@ static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end
 	assert_true(restored > n / 2);
 }
 
-/* ---- launchers of all kinds ---- */
+/* ---- launchers that fail, wait or send invalid messages ---- */
 
-// a worker in bash: connects, sends its token and a READY of one thread with a version of 6 or so characters
+// a worker in bash: CONNECT opens the connection; READY sends the token and a READY message with one thread and a
+// version of at most 9 characters
 #define CONNECT "IFS=: read -r host port token <<<$POUND_WORKER; exec 3<>/dev/tcp/$host/$port; "
-#define ZEROS_8 "\\0\\0\\0\\0\\0\\0\\0\\000" // three digits, as one may follow
+#define ZEROS_8 "\\0\\0\\0\\0\\0\\0\\0\\000" // three octal digits: another digit may follow
 #define READY(version)                                                                             \
 	"version=" version                                                                             \
 	"; printf \"$token\\1\\0\\0\\0\\1\\0\\0\\0\\0\\0\\0\\0\\x${#version}\\0\\0\\0" ZEROS_8 ZEROS_8 \
 	"$version\" >&3; "
-// takes the head of STUDY and answers with the digest of another design
+// reads the header of the STUDY message and answers with the digest of another design
 #define DESIGN                                                                           \
 	"head -c 32 <&3 >/dev/null; printf "                                                 \
 	"'\\3\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\0\\40\\0\\0\\0\\1\\0\\0\\0\\0\\0\\0\\0" ZEROS_8 \
@@ -247,8 +249,8 @@ static void a_killed_coordinator_goes_on_from_its_checkpoint_and_its_workers_end
 
 static const struct {
 	const char *what;
-	const char *command; /* BASH: run by bash */
-	const char *reports; /* in stderr */
+	const char *command; /* a bash script */
+	const char *reports; /* text expected in stderr */
 } launchers[] = {
     {"a launcher that fails", "false", "its launcher ended with status 1 and without a connection"},
     {"a command that is not there", "/nonexistent/pound-worker", "its launcher ended with status 127"},
@@ -305,7 +307,7 @@ static void a_late_worker_takes_part(void **state)
 	program_free(&outcome);
 }
 
-/* The name of this machine that workers elsewhere use: it stands in POUND_WORKER. */
+/* --worker-host sets the host name in POUND_WORKER, by which workers on other machines connect. */
 static void workers_connect_to_the_host_that_the_user_names(void **state)
 {
 	char command[640];
@@ -346,7 +348,7 @@ static void blocks_of_a_worker_that_does_not_go_on_run_elsewhere(void **state)
 	double start = groups_now();
 	pid_t pid = run_start(world.launcher, "1");
 	groups_wait(world.pids, 1, pids);
-	// it has blocks from its connection to nearly the end of the study
+	// a worker holds blocks from its connection until nearly the end of the study
 	while (!connected(world.err) && !groups_is_gone(pid))
 		usleep(1000);
 	assert_true(grown(pid, checkpoint_size() + world.size / 8));
@@ -371,7 +373,7 @@ static void bytes_write(const char *bytes, size_t n)
 
 static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_bytes(void **state)
 {
-	// few blocks, whose last records are short: a response to 9 gaps
+	// a response study of 5 gaps: few blocks, and a short last record
 	struct program_outcome document = POUND("example", "gap");
 	(void)state;
 	groups_write(world.out, document.out);
@@ -401,7 +403,7 @@ static void a_checkpoint_cut_at_any_byte_of_its_last_record_goes_on_to_the_same_
 		assert_int_equal(checkpoint_size(), n);
 		program_free(&outcome);
 	}
-	// a byte of the last record that is another one
+	// one bit of the last record changed
 	for (size_t i = last; i < n; i += step, cuts++) {
 		bytes[i] ^= 4;
 		bytes_write(bytes, n);
@@ -458,7 +460,7 @@ static void several_ranks_of_pound_run_are_wrong_usage(void **state)
 	program_free(&outcome);
 }
 
-// of the length that tokens have
+// a token of valid length
 #define TOKEN_16 "0123456789abcdef"
 #define TOKEN    TOKEN_16 TOKEN_16 TOKEN_16 TOKEN_16
 

@@ -1,4 +1,5 @@
-/* Copies of a database made while studies are submitted and run: each is a whole database, and serves. */
+/* Copies of a database made while studies are submitted and run: each is a complete database that a server can use.
+ * Databases removed, replaced or restored under a server. */
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,7 +21,7 @@ static void submit(const struct service *service, int rows)
 	free(study);
 }
 
-/* The results that a copy has, each equal to the server's; how many. */
+/* Number of results in a copy; fails unless each equals the server's. */
 static int compare(const struct service *service, const char *path)
 {
 	int n = 0;
@@ -60,7 +61,7 @@ static void a_copy_made_while_studies_run_is_a_whole_database(void **state)
 		struct program_outcome outcome = program_run(copying, NULL);
 		program_expect(&outcome, 0);
 		program_free(&outcome);
-		// what was accepted before is in it
+		// studies accepted before the copy are in it
 		struct service copy = *service;
 		strcpy(copy.database, path);
 		assert_int_equal(service_number(&copy, "SELECT count(*) FROM study"), n_ids);
@@ -69,14 +70,14 @@ static void a_copy_made_while_studies_run_is_a_whole_database(void **state)
 		free(check);
 		results += compare(service, path);
 		outcome = program_run(copying, NULL);
-		program_expect(&outcome, 1); // it is there
+		program_expect(&outcome, 1); // the file exists
 		program_free(&outcome);
 	}
 	check_report("copies while %d studies were submitted and run: %d, whole %d, with %d results, all of the "
 	             "same bytes",
 	             n_ids, COPIES, COPIES, results);
 	assert_true(results > COPIES);
-	// a server on the last copy runs what was not finished in it
+	// a server on the last copy runs its unfinished studies
 	service_stop(service);
 	strcpy(service->database, path);
 	service_start(service, 2);
@@ -110,7 +111,7 @@ static void a_copy_can_be_copied(void **state)
 static const char REPLACED[] =
     "the database file was removed or replaced: nothing is accepted until the server is restarted";
 
-/* The status of a POST of a small study, and of all else that changes something. */
+/* Fails unless a POST, a DELETE and /readyz are answered with 503. */
 static void nothing_is_accepted(const struct service *service, const char *why)
 {
 	char *study = service_study(2, 1, 99), path[64];
@@ -123,7 +124,7 @@ static void nothing_is_accepted(const struct service *service, const char *why)
 	answer_free(&answer);
 	snprintf(path, sizeof path, "/v1/studies/%s", ids[0]);
 	answer = service_ask(service, &(struct ask){.method = "DELETE", .path = path});
-	// it may have been done in the file that is not there any more, and then have been put back with it
+	// 404: an earlier call may have deleted the study in the renamed file
 	assert_true(answer.status == 503 || answer.status == 404);
 	answer_free(&answer);
 	free(study);
@@ -142,10 +143,10 @@ static void a_database_that_is_replaced_under_a_server_is_not_written_to(void **
 		snprintf(aside, sizeof aside, "%s-aside", name);
 		assert_int_equal(rename(name, aside), 0); // removed
 		nothing_is_accepted(service, REPLACED);
-		FILE *other = fopen(name, "w"); // and replaced
+		FILE *other = fopen(name, "w"); // replaced
 		fclose(other);
 		nothing_is_accepted(service, REPLACED);
-		assert_int_equal(rename(aside, name), 0); // and put back
+		assert_int_equal(rename(aside, name), 0); // put back
 		submit(service, 2);
 		assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
 	}
@@ -175,7 +176,7 @@ static void a_second_server_after_the_lock_is_removed_is_alone(void **state)
 	unlink(second.log);
 }
 
-/* A file's content put into another. */
+/* Overwrites a file with the content of another. */
 static void overwrite(const char *from, const char *to)
 {
 	size_t n;
@@ -207,7 +208,7 @@ static void a_wal_is_not_applied_to_another_database(void **state)
 		submit(service, 2);
 	service_kill(service);
 	assert_int_equal(access(wal, F_OK), 0);
-	// as who restores a file by hand does it: another file of that name, the old WAL beside it
+	// a restore by hand: another file of that name beside the old WAL
 	unlink(service->database);
 	overwrite(backup, service->database);
 	assert_int_not_equal(service_run(service, 1), 0);
@@ -215,11 +216,11 @@ static void a_wal_is_not_applied_to_another_database(void **state)
 	snprintf(line, sizeof line, "-wal does not belong to");
 	assert_non_null(strstr(log, line));
 	free(log);
-	assert_int_equal(access(wal, F_OK), 0); // and nothing was lost by the try
+	assert_int_equal(access(wal, F_OK), 0); // the refused start has removed nothing
 	restore(service, backup, 0);
 	service_start(service, 1);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 0);
-	// and pages that do not hold together are found where a server was killed
+	// inconsistent pages are found at the start after a kill
 	submit(service, 200);
 	assert_true(service_wait(service, ids[n_ids - 1], "succeeded", 0));
 	service_stop(service);
@@ -250,18 +251,18 @@ static void a_copy_is_restored_in_the_place_of_a_database_and_its_wal(void **sta
 	snprintf(backup, sizeof backup, "%s/backup.db", service->directory);
 	copy(service->database, backup, 0);
 	submit(service, 2);
-	restore(service, backup, 1); // it is in use
+	restore(service, backup, 1); // the database is in use
 	service_kill(service);
 	restore(service, "/nonexistent", 1);
 	overwrite("/bin/true", (snprintf(path, sizeof path, "%s/true.db", service->directory), path));
-	restore(service, path, 1); // no database
+	restore(service, path, 1); // not a database
 	unlink(path);
 	restore(service, backup, 0);
 	service_start(service, 1);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 1);
 	assert_true(service_wait(service, ids[0], "succeeded", 0));
 	service_stop(service);
-	// the former is whole, with what was in its WAL
+	// the former database is complete, with the content of its WAL
 	strcat(service->database, "-replaced");
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), 2);
 }

@@ -1,4 +1,5 @@
-/* service_bridge.c - the UM-Bridge protocol 1.0: the assertions of its conformity tests, every error, and the numbers. */
+/* service_bridge.c - the UM-Bridge protocol 1.0: the assertions of its conformity tests, every error, and values compared
+ * with `pound run`. */
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -11,15 +12,14 @@
 
 static struct answer call(const struct service *service, const char *path, const char *body)
 {
-	return service_ask(service,
-	                   &(struct ask){.method = "POST",
-	                                 .path = path,
-	                                 .headers = {"Content-Type:"}, // clients need not say what they send
-	                                 .body = body,
-	                                 .length = strlen(body)});
+	return service_ask(service, &(struct ask){.method = "POST",
+	                                          .path = path,
+	                                          .headers = {"Content-Type:"}, // clients need not send it
+	                                          .body = body,
+	                                          .length = strlen(body)});
 }
 
-/* A call that must be refused: exactly two members, of this type; the message has `text`. */
+/* Fails unless a call gets an error with exactly two members: this type and a message that contains `text`. */
 static void refused(const struct service *service, const char *path, const char *body, const char *type,
                     const char *text)
 {
@@ -37,7 +37,7 @@ static void refused(const struct service *service, const char *path, const char 
 	answer_free(&answer);
 }
 
-/* A call that must be answered. */
+/* Fails unless a call succeeds; returns its answer. */
 static struct reading *answered(const struct service *service, const char *path, const char *body)
 {
 	struct answer answer = call(service, path, body);
@@ -97,7 +97,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	static const char *const calls[] = {"/ModelInfo", "/InputSizes",    "/OutputSizes", "/Evaluate",
 	                                    "/Gradient",  "/ApplyJacobian", "/ApplyHessian"};
 	static const char right[] = "\"name\": \"pound\", \"input\": [[2.5, 3.1, 1, 0.6]]";
-	// a record at rest: the ratio to a motion that is none has no value; steps too long: no run has a result
+	// a record of zeros: the ratio to a zero response is undefined; steps too long: no run has a result
 	static const char still[] =
 	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 50}, "
 	    "{\"frequency_hz\": "
@@ -138,7 +138,7 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	    "/config/row: must be a whole number in [0, 1048575]; /input/0/0: f_e must be greater than 0 Hz, got "
 	    "0; /input/0/1: f_2 must be greater than 0 Hz, got -2; /input/0/2: m_2/m_1 must be a number; "
 	    "/input/0/3: eps must be in [0, 1], got 1.5");
-	// what values mean together is checked as in any study: 20 cycles of 1e-9 Hz are too many samples
+	// rules between values are checked as in any study: 20 cycles of 1e-9 Hz need too many samples
 	refused(service, "/Evaluate", "{\"name\": \"pound\", \"input\": [[1e-9, 2, 1, 0.5]]}", "InvalidInput",
 	        "/scene/excitation/time_step_s: a ground motion may have at most 10000000 samples");
 	snprintf(body, sizeof body, "{%s, \"config\": {\"study\": {\"kind\": \"sensitivity\", \"scene\": {}}}}",
@@ -146,14 +146,14 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	refused(service, "/Evaluate", body, "InvalidInput",
 	        "/config/study/scene/oscillators: is required: an array of 2 elements; /config/study/inputs: is "
 	        "required");
-	// every digit of the study counts: with 15 of them this is 1
+	// all digits of a number in the study are read: rounded to 15 digits this is 1
 	snprintf(
 	    body, sizeof body,
 	    "{%s, \"config\": {\"study\": {\"scene\": {\"contact\": {\"restitution\": 1.0000000000000002}}}}}",
 	    right);
 	refused(service, "/Evaluate", body, "InvalidInput",
 	        "/config/study/scene/contact/restitution: must be in [0, 1]");
-	// as deep as JSON may be
+	// the deepest JSON accepted
 	snprintf(body, sizeof body,
 	         "{%s, \"config\": {\"study\": "
 	         "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}}",
@@ -181,14 +181,14 @@ static void every_error_of_the_protocol_has_its_type_status_and_message(void **s
 	         study);
 	refused(service, "/Evaluate", body, "InvalidOutput",
 	        "1 run failed: the steps of the solver are too long");
-	// more than a client should wait for
+	// a call that would take too long
 	snprintf(body, sizeof body,
 	         "{\"name\": \"pound\", \"input\": [[0.001, 2, 1, 0.5]], \"config\": {\"signals\": "
 	         "100000}}");
 	refused(service, "/Evaluate", body, "InvalidInput", "a call may take at most 60: submit it as a study");
 }
 
-/* The paper's study with the values of its inputs put in, as a response study. */
+/* The paper's study as a response study, with these values of its inputs; the caller frees it. */
 static char *response_of(const double x[4], int signals)
 {
 	static const char form[] =
@@ -204,7 +204,7 @@ static char *response_of(const double x[4], int signals)
 	return study;
 }
 
-/* The digits of a number in JSON behind a text. */
+/* The digits of the number after a text in JSON. */
 static void digits_behind(const char *json, const char *text, char digits[32])
 {
 	const char *at = strstr(json, text);
@@ -242,12 +242,12 @@ static void evaluate_gives_the_numbers_of_the_response_study(void **state)
 		answer_free(&answer);
 		free(study);
 	}
-	// without energy balances an interval is passed in one step where nothing happens in it
+	// rounding only: without energy balances, intervals without an event are passed in one step
 	assert_true(largest < 1e-12);
 	check_report("%d points: largest relative difference to pound run %.1e", POINTS, largest);
 }
 
-/* Samples of a study and its model in the same rows: the same scenes and noise, run in another company. */
+/* Samples of a study against its model evaluated at the same rows: the same scenes and noise, run in different blocks. */
 static void a_stored_study_is_a_model_by_its_id_and_a_row_is_that_of_its_design(void **state)
 {
 	enum { ROWS = 6, SAMPLES = 5 /* A, B, AB of three inputs */ };
@@ -273,7 +273,7 @@ static void a_stored_study_is_a_model_by_its_id_and_a_row_is_that_of_its_design(
 		reading_close(r);
 	}
 	assert_int_equal(n, ROWS * SAMPLES);
-	// scenes are run in units of their own, which are found for all samples of a block together
+	// rounding only: scenes are run in scaled units, which are chosen for all samples of a block together
 	assert_true(largest < 1e-12);
 	check_report("%d samples of a stored study: largest relative difference %.1e", n, largest);
 	answer_free(&csv);
@@ -302,7 +302,7 @@ static void every_cell_of_a_sweep_has_its_outputs_in_order(void **state)
 	struct reading *r = answered(service, "/Evaluate", body);
 	const int n = reading_count(r, "/output/0");
 	assert_true(reading_number(sizes, "/outputSizes/0") == n);
-	// 6 frequencies of 4 laws: force for the linear one, demand for the others, impulse for each
+	// 6 frequencies x 4 laws x 2 outputs: force (linear law) or demand (other laws), and impulse
 	assert_int_equal(n, 48);
 	// the cell of f_1 = 2 Hz and the linear law is the paper's study
 	struct reading *one =
@@ -339,7 +339,7 @@ static void evaluate_takes_milliseconds(void **state)
 	free(latencies.answers);
 }
 
-/* The conformity tests of UM-Bridge themselves, from a checkout in UMBRIDGE_DIR. */
+/* The conformity tests of UM-Bridge from a checkout in UMBRIDGE_DIR; skipped without one. */
 static void the_conformity_tests_of_the_protocol_pass(void **state)
 {
 	struct service *service = *state;

@@ -1,6 +1,6 @@
-/* A database in which one bit has flipped: the server refuses it or says what is damaged, and hands out nothing wrong.
+/* A database with one flipped bit: the server refuses it or reports what is damaged, and never returns wrong data.
  *
- * The copies are opened by the server's store, in this process, so that the sanitizers see what it does with them. */
+ * This process opens the copies by the server's store, so that sanitizers check the store. */
 #include <fcntl.h>
 #include <string.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@ enum { STUDIES = 4, BLOCKS_MAX = 64 };
 
 static const char *const names[] = {"request", "result"};
 
-/* What is in the database while it is whole. */
+/* Content of the undamaged database. */
 static struct {
 	int64_t id;
 	char *content[2];
@@ -29,7 +29,7 @@ static struct {
 	int copies, refused, same, damaged, missing, unread, wrong;
 } count;
 
-/* Given    study  number of one of whole */
+/* Copies a block to `whole`; study: index in `whole`, an int. */
 static bool block_keep(void *study, const struct store_block *block)
 {
 	int i = *(int *)study;
@@ -60,7 +60,7 @@ static bool block_compare(void *of, const struct store_block *block)
 
 static void ignore(void *to, const struct study_status *study)
 {
-	// whatever the row says, it is a row
+	// any content of the row is accepted
 	*(int *)to += study->status != NULL;
 }
 
@@ -70,7 +70,7 @@ static void look(struct store *store)
 	store_list(store, &(struct store_filter){.before = INT64_MAX, .limit = 100}, ignore, &rows);
 	for (int i = 0; i < STUDIES; i++) {
 		struct seen seen = {.study = i};
-		// all blocks of a study or fewer, never another value
+		// some or all blocks of the study, never a wrong value
 		enum store_status blocks = store_blocks(store, whole[i].id, block_compare, &seen);
 		if (blocks == STORE_CORRUPT)
 			count.unread++;
@@ -135,7 +135,7 @@ static void a_flipped_bit_is_refused_or_reported_and_never_served(void **state)
 	         (int)getpid());
 	srand(1);
 	for (; count.copies < flips; count.copies++) {
-		// a third in the first two pages, where the tables' structure is
+		// a third of the flips in the first two pages, which hold the structure of the tables
 		size_t at = (size_t)rand() % (count.copies % 3 ? n : 8192);
 		char flip = (char)(1 << rand() % 8);
 		bytes[at] ^= flip;

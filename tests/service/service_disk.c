@@ -1,5 +1,5 @@
-/* A full disk: a tmpfs of 8 MiB, which takes root to mount.  Without it the tests are skipped; service_queue has one in
- * which the server's files may not grow. */
+/* A full disk: a tmpfs of 8 MiB; skipped unless root can mount it.  service_queue has a test without root, in which the
+ * size of the server's files is limited. */
 #include <fcntl.h>
 #include <string.h>
 #include <sys/mount.h>
@@ -13,7 +13,7 @@ enum { ROWS = SERVICE_ROWS, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
 
 static char log_path[64];
 
-/* A service whose directory is a small disk, its log elsewhere. */
+/* A service whose directory is a small disk; its log is elsewhere. */
 static int small_disk(void **state)
 {
 	struct service *service = service_new();
@@ -42,7 +42,7 @@ static int large_disk(void **state)
 	return 0;
 }
 
-/* Takes what is left of the disk. */
+/* Fills the disk. */
 static void fill(const struct service *service)
 {
 	static const char zeros[4096];
@@ -73,7 +73,7 @@ static int status_of(const struct service *service, const char *method, const ch
 	return status;
 }
 
-/* All that only reads. */
+/* Fails unless requests that only read are answered; returns their number. */
 static int read_all(const struct service *service, const char *done, const char *running)
 {
 	static const char *const paths[] = {"/v1/studies/%s", "/v1/studies/%s/request", "/v1/studies/%s/results",
@@ -97,7 +97,7 @@ static void refuse(const struct service *service, const char *study)
 	assert_int_equal(status_of(service, "GET", "/readyz", ""), 503);
 }
 
-/* Waits until the server has met the full disk. */
+/* Waits until the server's log reports the full disk. */
 static void await_full(void)
 {
 	for (char *text = NULL;;) {
@@ -143,13 +143,13 @@ static void a_full_disk_refuses_studies_answers_questions_and_is_survived(void *
 	refuse(service, small);
 	await_full();
 	reads += read_all(service, done, running);
-	// a server that starts on a full disk answers too
+	// a server that starts on a full disk answers, too
 	service_kill(service);
 	fill(service);
 	service_start(service, 2);
 	refuse(service, small);
 	reads += read_all(service, done, running);
-	// what is not wanted any more can go
+	// a study can be deleted on a full disk
 	assert_int_equal(status_of(service, "DELETE", "/v1/studies/%s", done), 204);
 	fill(service);
 	refuse(service, small);
@@ -176,7 +176,7 @@ static void a_full_disk_refuses_studies_answers_questions_and_is_survived(void *
 	free(large);
 }
 
-/* Posts studies of a tenth of a mebibyte until one is refused; how many were taken. */
+/* Posts studies that need about 0.1 MiB each until one is refused; returns the number of accepted studies. */
 static int fill_by_studies(const struct service *service, char (*ids)[17], int most)
 {
 	static const char study[] = "{\"kind\": \"response\", \"scene\": {\"oscillators\": [{\"frequency_hz\": "

@@ -1,5 +1,5 @@
-/* What a server estimates: CPU time, which a trial corrects; memory beside what studies take, and what becomes of those that are
- * too large. */
+/* Estimates of a server: CPU time, which a trial corrects; memory, compared with the memory that studies use; what
+ * happens to studies above the limits. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,10 +11,11 @@
 #include "schema/study/study_json.h"
 #include "tests/support/service.h"
 
-static const double MIB = 1 << 20, LEAST = 8 /* [MiB] below which the server's own pages count */,
-                    CPU_MOST = 0.5 /* [s] estimated, of an example */, FACTOR = 1.5;
+static const double MIB = 1 << 20,
+                    LEAST = 8 /* [MiB] smaller studies are not compared: the server's own pages matter */,
+                    CPU_MOST = 0.5 /* [s] largest estimate of an example that is run */, FACTOR = 1.5;
 
-/* A line of the status of a server's process [bytes]. */
+/* A value of /proc/PID/status of a server [bytes]. */
 static double status_bytes(const struct service *service, const char *name)
 {
 	char path[64], line[128];
@@ -29,7 +30,7 @@ static double status_bytes(const struct service *service, const char *name)
 	return 1024 * kib;
 }
 
-/* Lets the largest memory of a server's process be that from here on. */
+/* Resets the peak memory of a server's process. */
 static void forget_peak(const struct service *service)
 {
 	char path[64];
@@ -61,8 +62,8 @@ static double estimated(const struct service *service, const char *study, const 
 	return value;
 }
 
-/* A server that has just been started runs a study; by what factor its memory grew by more or less than estimated, 1 for a
- * small one. */
+/* Runs a study on a new server; returns the factor, >= 1, between the growth of its memory and the estimate; 1 for a
+ * small study. */
 static double compare(const char *name, const char *study)
 {
 	char id[17];
@@ -130,7 +131,7 @@ static void the_memory_of_a_study_is_estimated(void **state)
 	service_start(service, 1);
 	for (int i = 0; examples[i].name; i++) {
 		struct pound_study *whole = study_from_json(examples[i].text, strlen(examples[i].text), &problems);
-		if (!whole) // a design alone
+		if (!whole) // a design only
 			continue;
 		study_free(whole);
 		if (estimated(service, examples[i].text, "estimated_cpu_s") < CPU_MOST)
@@ -169,7 +170,8 @@ static void a_study_too_large_for_the_memory_is_refused_with_both_numbers(void *
 	service_free(service);
 }
 
-/* Each has room alone; the small one behind them has room beside the first, but waits for its turn. */
+/* Each large study fits alone; the small one, submitted last, would fit beside the first but must not overtake the
+ * second. */
 static void two_studies_that_do_not_fit_together_run_one_after_the_other(void **state)
 {
 	static const char large[] = ROWS("40000"), small[] = ROWS("1000");
@@ -198,7 +200,7 @@ static void two_studies_that_do_not_fit_together_run_one_after_the_other(void **
 	             most, took / MIB);
 	assert_int_equal(most, 1);
 	assert_true(took < FACTOR * estimate);
-	// in their order
+	// started in the order of submission
 	assert_int_equal(
 	    service_number(
 	        service,
@@ -208,7 +210,7 @@ static void two_studies_that_do_not_fit_together_run_one_after_the_other(void **
 	service_free(service);
 }
 
-/* Submits a study, and stops its server before it has ended; then it was estimated at so much less. */
+/* Kills the server of a running study and lowers the study's stored estimate. */
 static void a_study_that_takes_three_times_its_estimate_says_so(void **state)
 {
 	static const char study[] = ROWS("6000");
@@ -223,7 +225,7 @@ static void a_study_that_takes_three_times_its_estimate_says_so(void **state)
 	reading_close(status);
 	answer_free(&answer);
 	service_kill(service);
-	// blocks say it by themselves
+	// the CPU time of the blocks exceeds the estimate
 	service_change(service, "UPDATE study SET cpu_s_estimated = 1e-5");
 	service_start(service, 1);
 	assert_true(service_wait(service, id, "running", 1));
@@ -236,7 +238,8 @@ static void a_study_that_takes_three_times_its_estimate_says_so(void **state)
 	reading_close(status);
 	answer_free(&answer);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	// nothing is said of what an older version accepted; reductions count too, once a study has ended
+	// a study accepted by an older version has no estimate, so nothing is reported; the CPU time of a finished study
+	// includes the reductions
 	answer = service_get(service, "/v1/studies/%s/results", id);
 	status = answer_read(&answer);
 	const double all = reading_number(status, "/timing/cpu_s");
@@ -258,7 +261,8 @@ static void a_study_that_takes_three_times_its_estimate_says_so(void **state)
 	service_free(service);
 }
 
-/* A server tries what takes a while: its estimate is of this machine, and not the count that a process without a trial makes. */
+/* A server makes a trial of a long study: its estimate is measured on this machine and differs from the estimate by
+ * counting, which a process without a trial gives. */
 static void what_takes_a_while_is_tried(void **state)
 {
 	struct service *service = service_with((const char *const[][2]){{NULL}}, 1);
@@ -271,7 +275,7 @@ static void what_takes_a_while_is_tried(void **state)
 		const struct cost counted = cost_of(study, 1);
 		assert_int_equal(cost_tried(&counted), tried);
 		const double cpu_s = estimated(service, text, "estimated_cpu_s");
-		// as many digits as a document has
+		// 1e-9: above the rounding of numbers in a document
 		assert_int_equal(fabs(cpu_s / counted.cpu_s - 1) > 1e-9, tried);
 		study_free(study);
 		free(text);

@@ -1,6 +1,7 @@
-/* A disk that fails now and then, memory that is not there, and a process that dies in the middle of a migration.
+/* Failing disk operations, failing allocations, and kills during a migration.
  *
- * Each failure is put at the n-th call of its kind, n = 1, 2, 3, ... (tests/support/preload.c), so that every place is met. */
+ * tests/support/preload.c makes the n-th call of a kind fail, for n = 1, 2, 3, ... (allocations: with a step), so that
+ * every call fails once. */
 #include <limits.h>
 #include <nettle/sha2.h>
 #include <sqlite3.h>
@@ -14,13 +15,13 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-/* Studies a client knows to be stored. */
+/* Studies that the server has accepted. */
 struct accepted {
 	char (*ids)[17]; /* (n) */
 	int n, room, refused;
 };
 
-/* Posts a small study, which is accepted or refused with 500 or 503. */
+/* Posts a small study; fails unless the server accepts it or refuses it with 500 or 503. */
 static void post(const struct service *service, int seed, struct accepted *accepted)
 {
 	char *study = service_study(2, 1, seed);
@@ -41,7 +42,7 @@ static void post(const struct service *service, int seed, struct accepted *accep
 	answer_free(&answer);
 }
 
-/* All that was accepted finishes, without a restart, and a new study too. */
+/* Fails unless all accepted studies and a new one finish without a restart. */
 static void recover(const struct service *service, struct accepted *accepted)
 {
 	int n = accepted->n;
@@ -77,7 +78,7 @@ static void a_disk_that_fails_by_chance_loses_nothing_and_the_server_recovers_by
 	free(accepted.ids);
 }
 
-/* The end of a log, from its last line on that says more than the version of SQLite. */
+/* The end of a log, from the last line that is not the version of SQLite. */
 static const char *said(const char *log)
 {
 	const char *line = "";
@@ -87,7 +88,7 @@ static const char *said(const char *log)
 	return line;
 }
 
-/* A start that was refused has said why, in the last line of its log; the log is emptied for the next. */
+/* Fails unless a start with exit status 1 gave a reason in the last line of its log; empties the log. */
 static void expect_reason(const struct service *service, int status)
 {
 	char *log = program_file(service->log, NULL);
@@ -97,8 +98,8 @@ static void expect_reason(const struct service *service, int status)
 	assert_true(truncate(service->log, 0) == 0);
 }
 
-/* Starts, of a server that makes its database or finds it, each with one more call before the one that fails, until none
- * does; how many, and how many of them were refused. */
+/* Starts a server with its n-th call on the disk failing, n = 1, 2, ..., until no call fails; `makes`: each start creates
+ * the database.  Returns the number of starts; adds the refused ones to `refused`. */
 static int start_on_a_failing_disk(struct service *service, struct faults *faults, bool makes, int *refused)
 {
 	int starts = 0;
@@ -167,7 +168,7 @@ static void a_copy_that_fails_says_why_and_is_not_left(void **state)
 		failed = atomic_exchange(&faults->disk_fails_in, 0) <= 0;
 		assert_true(outcome.status == 0 || (failed && outcome.status == 1 && *said(outcome.err)));
 		assert_int_equal(access(path, F_OK) == 0, outcome.status == 0);
-		if (outcome.status == 0) // SQLite can do without some calls
+		if (outcome.status == 0) // SQLite tolerates the failure of some calls
 			assert_int_equal(service_number(&copy, "SELECT count(*) FROM document"), 2);
 		failures += outcome.status;
 		program_free(&outcome);
@@ -176,7 +177,7 @@ static void a_copy_that_fails_says_why_and_is_not_left(void **state)
 	    "the n-th call on the disk fails: at %d copies, of which %d failed, were reported and removed",
 	    copies, failures);
 	assert_true(failures > 2);
-	// what was there, if only an empty file, is another's
+	// an existing file is not overwritten, even if it is empty
 	assert_int_equal(truncate(path, 0), 0);
 	struct program_outcome outcome = program_run(copying, NULL);
 	program_expect(&outcome, 1);
@@ -188,14 +189,14 @@ static void a_copy_that_fails_says_why_and_is_not_left(void **state)
 	free(accepted.ids);
 }
 
-/* What a client asks while memory fails. */
+/* A request sent while an allocation fails. */
 struct question {
 	const char *name, *method, *rest;
-	bool fixed; /* there is one right answer, whenever it is asked */
+	bool fixed; /* the right answer never changes */
 };
 
-/* Asks for one study after the other with the n-th allocation failing for n = 1, 2, ... until none does; how many
- * failed. */
+/* Sends a request for one study after the other while the n-th allocation fails, n = 1, 1 + step, ..., until none fails
+ * three times in a row; returns how many requests had a failing allocation. */
 static int starve(const struct service *service, struct faults *faults, const struct question *question,
                   char (*ids)[17], int n_ids, int step)
 {
@@ -261,14 +262,14 @@ static void every_allocation_of_a_request_may_fail(void **state)
 	assert_true(service_wait(service, id[0], "succeeded", 0));
 	struct answer before = service_get(service, "/v1/studies/%s/results", id[0]);
 	int failed = starve(service, faults, &questions[0], id, 1, step);
-	// what was accepted meanwhile finishes; of these each is asked for the first time, as its status is kept once reported
+	// studies accepted meanwhile finish; the status requests below use new studies because a reported status is cached
 	struct accepted accepted = {0};
 	for (int i = 0; i < FRESH; i++)
 		post(service, i, &accepted);
 	recover(service, &accepted);
 	while (service_number(service, "SELECT count(*) FROM study WHERE finished IS NULL"))
 		usleep(5000);
-	// SQLite's caches may grow in any round; a leak grows in each
+	// SQLite's caches may grow in some rounds; a leak grows in every round
 	long left = LONG_MAX;
 	for (int round = 0; round < 3; round++) {
 		long live = faults->memory_live;
@@ -302,7 +303,7 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		skip();
 	struct service *service = service_new();
 	struct faults *faults = faults_new(service->directory);
-	// our own are among the first and the last; between them are SQLite's, which are many
+	// the server's own allocations are among the first and the last OURS; most of those between are SQLite's
 	enum { OURS = 150 };
 	int starts = 0, refused = 0, step = check_soaks() ? 3 : 29;
 	(void)state;
@@ -317,12 +318,12 @@ static void every_allocation_of_the_start_may_fail(void **state)
 		faults->memory_fails_in = at;
 		int status = service_try(service, 1);
 		faults->memory_fails_in = 0;
-		// 127: the loader had no memory for the program
+		// 127: the dynamic loader had no memory for the program
 		assert_true(status == 0 || status == 1 || status == 127);
 		expect_reason(service, status);
 		refused += status != 0;
 		spared = faults->memory_failed > before ? 0 : spared + 1;
-		// it never serves with options other than those given
+		// a server never serves with a default in place of a given option
 		assert_true(status != 0 || service->port != atoi(options_table[0].absent));
 		if (status == 0)
 			service_stop(service);
@@ -353,7 +354,7 @@ static void put_document(sqlite3 *db, int64_t id, const char *name, const char *
 
 enum { OLD_STUDIES = 12 };
 
-/* A database as version 1 left it: finished studies, one that runs and one that waits. */
+/* A database as version 1 left it: finished studies, a running one and a queued one. */
 static void make_version_1(const struct service *service)
 {
 	static const char row[] = "INSERT INTO study (id, status, kind, hash, runs, created, started, finished, "
@@ -384,7 +385,7 @@ static void make_version_1(const struct service *service)
 	free(schema);
 }
 
-/* Posts an old study once more with its key: it is the same study. */
+/* Fails unless an old study posted again with its key is answered with the same study. */
 static void expect_same(const struct service *service, int number, const char *id)
 {
 	char key[64], *study = service_study(2, 1, number);
@@ -401,8 +402,8 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 	static const char all[] =
 	    "SELECT group_concat(hex(content)) FROM (SELECT content FROM document ORDER BY study, name)";
 	static const struct {
-		const char *sql; /* whether a step was made */
-		int version;     /* that it leads to */
+		const char *sql; /* 1 after a step of the migration */
+		int version;     /* version of the database after the step */
 	} added[] = {{"SELECT count(*) FROM pragma_table_info('block') WHERE name = 'wall_s'", 2},
 	             {"SELECT count(*) FROM pragma_table_info('study') WHERE name = 'client'", 3},
 	             {"SELECT count(*) FROM pragma_table_info('study') WHERE name = 'attempt_kept'", 4},
@@ -419,7 +420,7 @@ static void a_migration_that_is_killed_anywhere_leaves_the_old_database_or_the_n
 		make_version_1(service);
 		faults->disk_kills_in = at;
 		int status = service_try(service, 1);
-		// its workers write as well, so it may be killed when it listens
+		// worker threads write too, so the kill may come when the server already listens
 		bool spared = atomic_exchange(&faults->disk_kills_in, 0) > 0;
 		if (status == 0 && spared)
 			break;

@@ -1,4 +1,4 @@
-/* service_growth.c - studies that run until their intervals are narrow, and results of the rows so far, in a real server. */
+/* service_growth.c - studies that grow until their intervals are narrow, and results of the rows so far, in a real server. */
 #include <string.h>
 
 #include "schema/json/json_pointer.h"
@@ -8,7 +8,7 @@
 
 enum { SIGNALS = 5, ROW_RUNS = 5 * SIGNALS, SEED = 7 };
 
-/* A study that looks at its intervals after 128, 256, 512 and 1024 rows, and after 2048 if it is not narrow yet.  For free. */
+/* A study that checks its intervals after 128, 256, 512, 1024 and 2048 rows until they are narrow; the caller frees it. */
 static char *growing_study(void)
 {
 	char *plain = service_study(SERVICE_ROWS, SIGNALS, SEED), rows[32];
@@ -19,7 +19,7 @@ static char *growing_study(void)
 	return study;
 }
 
-/* Path ID, which must be answered with that status. */
+/* Requests `path` with an id; fails unless the answer has this status. */
 static struct answer answer_of(const struct service *service, const char *path, const char *id, int status)
 {
 	struct answer answer = service_get(service, path, id);
@@ -71,7 +71,7 @@ a_killed_study_that_grows_goes_on_to_the_same_bytes_without_running_stored_block
 	(void)state;
 	service_start(service, 2);
 	service_submit(service, study, id);
-	// the third look is at 512 rows: between the second and the third
+	// killed between the second check (256 rows) and the third (512 rows)
 	assert_true(service_wait(service, id, "running", 300 * ROW_RUNS));
 	service_kill(service);
 	char *before = service_text(service, kept);
@@ -92,7 +92,7 @@ static void the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took
 	struct service *service = *state;
 	char *study = growing_study(), id[17];
 	service_submit(service, study, id);
-	// 2048 rows are what 80000 runs allow
+	// 80000 runs allow 2048 rows
 	assert_true(status_number(service, id, "/runs_total") == 2048 * ROW_RUNS);
 	assert_true(service_wait(service, id, "succeeded", 0));
 	struct answer answer = answer_of(service, "/v1/studies/%s/results", id, 200);
@@ -111,7 +111,7 @@ static void the_status_of_a_study_that_grows_has_its_bound_and_then_what_it_took
 
 static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **state)
 {
-	// the blocks that the last look added to the 512 rows before
+	// damages the blocks that were added after 512 rows
 	static const char added[] =
 	    "UPDATE block SET content = zeroblob(length(content)) WHERE "
 	    "(SELECT sum(b.runs) FROM block b WHERE b.number <= block.number) > 512 * 5 * 5";
@@ -125,7 +125,7 @@ static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **sta
 	int lines = 0;
 	for (const char *at = answer.body; (at = strchr(at, '\n')); at++)
 		lines++;
-	// a header, and five samples a row
+	// a header, and five samples per row
 	assert_int_equal(lines, 1 + 5 * 1024);
 	answer_free(&answer);
 	service_stop(service);
@@ -141,13 +141,13 @@ static void samples_of_a_design_that_grew_are_all_of_them_or_an_error(void **sta
 
 static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **state)
 {
-	// long enough for some questions while it runs
+	// long enough for several requests while it runs
 	enum { ROWS = 3 * SERVICE_ROWS };
 	struct service *service = *state;
 	char *study = service_study(ROWS, SIGNALS, SEED), id[17];
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "running", 100 * ROW_RUNS));
-	// the first block may be the last of the first ones to end
+	// 404: the first row may not be complete although later ones are
 	struct answer answer = service_get(service, "/v1/studies/%s/results?partial=true", id);
 	while (answer.status == 404) {
 		answer_free(&answer);
@@ -179,7 +179,7 @@ static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **st
 	assert_true(atoi(answer.retry_after) > 0);
 	answer_free(&answer);
 	assert_true(service_wait(service, id, "succeeded", 0));
-	// then it is the result
+	// of a finished study, partial=true gives the result
 	struct answer whole = answer_of(service, "/v1/studies/%s/results", id, 200);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
 	assert_string_equal(answer.body, whole.body);
@@ -199,7 +199,7 @@ static void cancel(const struct service *service, const char *id)
 
 static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
 {
-	// a minute of one core
+	// a minute on one core
 	enum { SIGNALS_MANY = 500 };
 	struct service *service = *state;
 	char *study = service_study(SERVICE_ROWS, SIGNALS_MANY, SEED), id[17];
@@ -241,11 +241,11 @@ static void results_so_far_come_at_once_when_asked_for_again(void **state)
 	assert_int_equal(length, strlen(text));
 	assert_int_equal(rows, 5);
 	free(again);
-	// a later one of the study takes its place; one that took no time is too old at once
+	// a later result of the study replaces it; here it has expired already
 	made.rows = 6;
 	partial_results_give(&results, &made, -1.0);
 	assert_null(partial_results_take(&results, 7, &length, &rows));
-	// the one that ends first makes room
+	// the result that expires first is replaced
 	for (int k = 0; k <= PARTIAL_RESULTS; k++) {
 		made.id = 100 + k;
 		partial_results_give(&results, &made, 10.0 + k);

@@ -1,4 +1,4 @@
-/* Requests as no library would send them: framing, targets, headers, methods, slow and many clients. */
+/* Malformed and unusual requests: framing, headers, targets, methods; paths to files; slow clients and many clients. */
 #include <dirent.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -19,15 +19,15 @@
 #define POST   "POST /v1/studies HTTP/1.1\r\n" HOST "Content-Type: application/json\r\n"
 #define GET    "GET /livez HTTP/1.1\r\n" HOST
 
-// a request that hides behind another one: it must never be answered
+// a request smuggled behind an invalid one: it must not be answered
 #define HIDDEN "GET /version HTTP/1.1\r\n" HOST "\r\n"
 
-/* `may`: further statuses that are as good; 0 is a connection that is closed, or waits, without an answer. */
+/* `may`: a second accepted status; 0: the connection is closed or stays open without an answer. */
 static const struct {
 	const char *bytes;
 	int status, may;
 	bool closes;
-	int answers; /* at most */
+	int answers; /* number of answers, at most */
 } CASES[] = {
     // framing
     {POST "Content-Length: 2\r\nContent-Length: 2\r\n\r\n{}" HIDDEN, 400, 400, true, 1},
@@ -40,7 +40,7 @@ static const struct {
     {POST "Transfer-Encoding: chunked\r\nTransfer-Encoding: gzip\r\n\r\n0\r\n\r\n" HIDDEN, 411, 411, true, 1},
     {POST "Transfer-Encoding : chunked\r\n\r\n0\r\n\r\n" HIDDEN, 400, 400, true, 1},
     {POST "Transfer-Encoding: chunked\r\n\r\nfffffffffffffffff\r\n" HIDDEN, 411, 411, true, 1},
-    // the parser below writes the head of this answer twice
+    // libmicrohttpd may write the header of these answers twice
     {POST "Content-Length: -1\r\n\r\n" HIDDEN, 400, 400, true, 2},
     {POST "Content-Length: +2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
     {POST "Content-Length: 0x2\r\n\r\n{}" HIDDEN, 400, 400, true, 2},
@@ -70,7 +70,7 @@ static const struct {
     {GET "X: \x7f\r\n\r\n" HIDDEN, 400, 400, true, 1},
     {GET "no colon\r\n\r\n", 400, 400, true, 1},
     {GET "Expect: 200-ok\r\n\r\n", 200, 417, false, 1},
-    // white space behind a value is no part of it, but where the parser below would not see the framing
+    // trailing white space is not part of a value
     {"GET /livez HTTP/1.1\r\nHost: localhost \t\r\n\r\n", 200, 200, false, 1},
     {POST "Content-Length: 2\r\nContent-Encoding: identity \r\n\r\n{}", 422, 422, false, 1},
     {"POST /v1/studies HTTP/1.1\r\n" HOST
@@ -106,7 +106,7 @@ static const struct {
     {"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505, 400, true, 1},
     {"\x16\x03\x01\x02\x01\x01\xfc\x03\x03\r\n\r\n", 400, 0, true, 1},
     {"\r\n\r\n" GET "\r\n", 200, 400, false, 1},
-    // two in one packet are both answered, in order
+    // two requests in one packet are both answered, in order
     {GET "\r\n" HIDDEN, 200, 200, false, 2},
     {POST "Content-Length: 2\r\n\r\n{}" HIDDEN, 422, 422, false, 2},
 };
@@ -161,7 +161,7 @@ static void a_nul_in_a_head_is_refused(void **state)
 	}
 }
 
-/* A request that repeats a part of it n times. */
+/* Sends a request in which `part` is repeated n times. */
 static void ask_long(const struct service *service, const char *head, const char *part, int n,
                      const char *tail, struct raw_answer *answer)
 {
@@ -180,7 +180,7 @@ static void a_head_over_a_limit_has_one_answer_that_says_so(void **state)
 #define LAST "Connection: close\r\n\r\n"
 	static const struct {
 		const char *head, *part, *tail;
-		int n, status; // times the part stands there
+		int n, status; // n: repetitions of `part`
 	} cases[] = {
 	    {"GET /v1/studies?", "&", TAIL, 15, 200},
 	    {"GET /v1/studies?", "&", TAIL, 16, 400},
@@ -205,7 +205,7 @@ static void a_head_over_a_limit_has_one_answer_that_says_so(void **state)
 		if (answer.status != cases[i].status || answer.n != 1 || !answer.closed || answer.reset)
 			fail_msg("%s %d times: %s", cases[i].part, cases[i].n, answer.text);
 	}
-	// there is no length at which the library below has room for the head and none for the answer
+	// at no length does libmicrohttpd have memory for the request header but none for the answer
 	for (int length = 31000; length < 33000; length += 25, n++) {
 		ask_long(service, GET "X: ", "x", length, "\r\n" LAST, &answer);
 		if (answer.status != 431 || answer.n != 1)
@@ -216,7 +216,7 @@ static void a_head_over_a_limit_has_one_answer_that_says_so(void **state)
 #undef LAST
 }
 
-/* Escapes, double escapes and other spellings of ../ before and between names of files. */
+/* Escapes, double escapes and other spellings of ../ before the names of files. */
 static void no_path_leads_to_a_file(void **state)
 {
 	static const char *const ups[] = {"../",           "..%2f",           "%2e%2e/", "%2e%2e%2f",
@@ -263,11 +263,11 @@ static void a_body_that_is_too_large_is_refused_before_it_is_read_and_without_a_
 	memcpy(bytes, head, strlen(head));
 	for (int i = 0; i < TRIES; i++) {
 		static struct raw_answer answer;
-		// a client that reads nothing until it has sent all
+		// a client that reads nothing until it has sent the whole body
 		raw_ask(service, bytes, strlen(head) + SIZE, 5, &answer);
 		if (answer.status != 413 || answer.reset || answer.n != 1)
 			fail_msg("%d%s: %s", answer.status, answer.reset ? " reset" : "", answer.text);
-		// and one that has only said what it will send
+		// a client that sends only the header
 		raw_ask(service, bytes, strlen(head), 2, &answer);
 		assert_int_equal(answer.status, 413);
 	}
@@ -321,10 +321,10 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 	static const struct {
 		const char *first, *then;
 	} clients[] = {
-	    {"", "G"},                                 // nothing, then a letter at a time
-	    {"GET /livez HTTP/1.1\r\n", "X-Y: a\r\n"}, // a header at a time
+	    {"", "G"},                                 // nothing, then single letters
+	    {"GET /livez HTTP/1.1\r\n", "X-Y: a\r\n"}, // single header fields
 	    {POST "Content-Length: 100000\r\n\r\n", " "},
-	    {GET "\r\n", ""}, // an answer, then silence
+	    {GET "\r\n", ""}, // a complete request, then silence
 	};
 	enum { KINDS = sizeof clients / sizeof clients[0], EACH = 40, N = KINDS * EACH };
 	(void)state;
@@ -335,7 +335,7 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 		sockets[i] = raw_open(service);
 		raw_send(sockets[i], clients[i % KINDS].first, strlen(clients[i % KINDS].first));
 	}
-	// the deadlines are absolute: a byte now and then does not move them
+	// the deadlines are absolute: further bytes do not extend them
 	for (int round = 0; round < 20; round++) {
 		for (int i = 0; i < N; i++)
 			raw_send(sockets[i], clients[i % KINDS].then, strlen(clients[i % KINDS].then));
@@ -354,7 +354,7 @@ static void who_is_slow_is_closed_and_others_are_served_meanwhile(void **state)
 	service_free(service);
 }
 
-/* Files without a name that a server has open. */
+/* Number of deleted files that a server has open. */
 static int files_unnamed(const struct service *service)
 {
 	char path[64], name[512];
@@ -388,7 +388,7 @@ static void long_answers_wait_for_slow_readers_in_files_without_names(void **sta
 	const int before = files_unnamed(service);
 	struct answer whole = service_get(service, "/v1/studies/%s/samples", id);
 	assert_int_equal(whole.status, 200);
-	assert_true(whole.length > 8 << 20); // more than sockets hold
+	assert_true(whole.length > 8 << 20); // more than socket buffers hold
 	assert_int_equal(files_unnamed_become(service, before), before);
 	int sockets[READERS];
 	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "\r\n", id);
@@ -408,7 +408,7 @@ static void long_answers_wait_for_slow_readers_in_files_without_names(void **sta
 	answer_free(&again);
 }
 
-/* One of the clients who ask for a long result again and again. */
+/* A client that requests a long result in a loop. */
 struct loop {
 	const struct service *service;
 	const char *method, *path;
@@ -501,14 +501,14 @@ static void more_connections_than_the_limit_get_503(void **state)
 		raw_send(sockets[i], request, strlen(request));
 		raw_receive(sockets[i], 0.2, &answer);
 		served += answer.status == (i % 2 ? 200 : 422);
-		// a refused client does not keep the place of another
+		// a refused connection is closed and occupies no slot
 		refused += answer.status == 503 && strstr(answer.text, "Retry-After: ") && answer.closed;
 	}
 	assert_int_equal(served, 3);
 	assert_int_equal(refused, 3);
 	for (int i = 0; i < N; i++)
 		close(sockets[i]);
-	// and when they have gone, others are served
+	// after they are closed, new connections are served
 	static struct raw_answer answer;
 	for (int i = 0; i < 100 && answer.status != 200; i++)
 		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
@@ -517,7 +517,7 @@ static void more_connections_than_the_limit_get_503(void **state)
 	service_free(service);
 }
 
-/* A service that may have no more than so many files open, now and for ever. */
+/* A service limited to n open files (soft and hard limit). */
 static struct service *with_files(int n)
 {
 	const char *build = getenv("POUND_BUILD");
@@ -540,7 +540,7 @@ static struct service *with_files(int n)
 	return service;
 }
 
-/* [s] that a server has computed for */
+/* CPU time of a server [s] */
 static double cpu_of(const struct service *service)
 {
 	clockid_t clock;
@@ -550,7 +550,7 @@ static double cpu_of(const struct service *service)
 	return (double)cpu.tv_sec + 1e-9 * (double)cpu.tv_nsec;
 }
 
-/* How often a word stands in a log. */
+/* Number of occurrences of a word in a server's log. */
 static int logged(const struct service *service, const char *word)
 {
 	int n = 0;
@@ -585,7 +585,7 @@ static void with_few_descriptors_fewer_are_served_and_nothing_spins(void **state
 	for (int i = 0; i < 100 && answer.status != 200; i++)
 		raw_ask(service, GET "\r\n", strlen(GET "\r\n"), 0.05, &answer);
 	assert_int_equal(answer.status, 200);
-	// some are served and the next one learns that the limit is reached
+	// connections are served up to the limit, the next one gets 503
 	for (int i = 0; i < N && refused == 0; i++, served++) {
 		sockets[i] = raw_open(service);
 		raw_send(sockets[i], GET "\r\n", strlen(GET "\r\n"));
@@ -608,7 +608,7 @@ static void what_the_library_reports_again_and_again_is_logged_once_a_second(voi
 	struct rlimit before, few;
 	int sockets[N];
 	struct service *service = *state;
-	// less than it had when it started, so that it cannot know
+	// lowered after the start, so the server does not know the new limit
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, NULL, &before), 0);
 	few = (struct rlimit){30, before.rlim_max};
 	assert_int_equal(prlimit(service->pid, RLIMIT_NOFILE, &few, NULL), 0);
@@ -622,7 +622,7 @@ static void what_the_library_reports_again_and_again_is_logged_once_a_second(voi
 	clock_gettime(CLOCK_MONOTONIC, &end);
 	for (int i = 0; i < N; i++)
 		close(sockets[i]);
-	// the seconds that were begun, and one more
+	// one line for each second begun, and one more
 	assert_true(lines >= 1 && lines <= end.tv_sec - start.tv_sec + 2);
 	assert_true(logged(service, " earlier messages omitted") >= 1);
 }

@@ -1,8 +1,8 @@
-/* SIGKILL at any moment, again and again, while a client submits studies, looks at them and fetches results.
+/* Repeated SIGKILL at random moments while a client submits studies, requests their status and fetches results.
  *
- * The client gives every study a key and submits it again until it is answered.  In the end there is each study once,
- * with the result of a server that was left in peace; and a result that was seen once is there to the last byte, its
- * timing too, so it was stored once. */
+ * The client gives every study a key and submits it again until it gets an answer.  At the end each study is stored once,
+ * with the result of an undisturbed server.  A result that the client has fetched never changes, its timing included,
+ * so it was stored only once. */
 #include <signal.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -12,19 +12,19 @@
 #include "tests/support/service.h"
 
 enum {
-	DOCUMENTS = 4,   /* different ones; of each so many rows more */
+	DOCUMENTS = 4,   /* different documents, with 1 to 4 times ROWS */
 	ROWS = 40,       /* x 5 samples x 5 signals: one to three blocks */
-	PER_SESSION = 1, /* studies submitted by session: about what it can run */
+	PER_SESSION = 1, /* new studies per session: about what the server can finish in a session */
 	SESSIONS_MAX = 1000,
-	STEPS = 4,           /* a session ends when it made so many steps at most, ... */
-	DELAY_US_MAX = 8000, /* ... and so much later at most */
-	LOOK_US = 5000,      /* between two looks at a study that is not done */
+	STEPS = 4,           /* steps of progress before the kill, at most */
+	DELAY_US_MAX = 8000, /* delay of the kill after these steps, at most */
+	LOOK_US = 5000,      /* between two requests for the status of an unfinished study */
 };
 
 static struct submission {
 	bool answered;
 	char id[17];
-	char *result; /* first seen; NULL: not yet */
+	char *result; /* as first fetched; NULL: not yet */
 } submissions[SESSIONS_MAX * PER_SESSION];
 static int n_submissions;
 
@@ -33,7 +33,7 @@ static char *document_of(int number)
 	return service_study(ROWS * (1 + number % DOCUMENTS), 5, number % DOCUMENTS);
 }
 
-/* Results of a server that nobody disturbs, without their timing. */
+/* Results of an undisturbed server, without their timing. */
 static void undisturbed(char *results[DOCUMENTS])
 {
 	struct service *service = service_new();
@@ -68,7 +68,7 @@ static bool submit(const struct service *service, int number)
 	return s->answered;
 }
 
-/* Asks for a result; one that was there before must be the same.  false: no answer. */
+/* Requests a result; fails if it differs from the result fetched before.  false: no answer. */
 static bool look(const struct service *service, struct submission *s)
 {
 	char path[64];
@@ -90,7 +90,7 @@ static bool look(const struct service *service, struct submission *s)
 	return answered;
 }
 
-/* What is done of a study; -1: no answer. */
+/* Finished runs of a study; -1: no answer. */
 static double runs_done(const struct service *service, const struct submission *s)
 {
 	char path[64];
@@ -107,7 +107,8 @@ static double runs_done(const struct service *service, const struct submission *
 	return runs;
 }
 
-/* One life of the server: submits and looks until some blocks are done, and on until it is killed. */
+/* Starts a server, submits studies and requests results until some blocks are done, then goes on until the server is
+ * killed. */
 static void session(struct service *service)
 {
 	int mine = 0, steps = rand() % (STEPS + 1), delay = rand() % DELAY_US_MAX;
@@ -178,7 +179,7 @@ static void kills_lose_no_study_double_none_and_change_no_byte(void **state)
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), n_submissions);
 	assert_int_equal(service_number(service, "SELECT count(*) FROM document WHERE name = 'result'"),
 	                 n_submissions);
-	// a test in which nothing was interrupted would show nothing
+	// enough studies were interrupted and enough results fetched for the test to mean something
 	assert_true(n_submissions >= n / 2 && resumed >= n / 4 && seen > n / 4);
 	for (int i = 0; i < n_submissions; i++)
 		free(submissions[i].result);

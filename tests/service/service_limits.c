@@ -1,4 +1,4 @@
-/* The limits of a server, each with the status and the words that server/server.md lists. */
+/* The limits of a server, each with the status and the text in the table of server/server.md. */
 #include <glob.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { LONG = 20000 };
 #define HASH "0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdef"
 #define POST "POST /v1/studies HTTP/1.1\r\n" HOST JSON
 
-/* requests that are over one limit; what stands between the halves comes so many times */
+/* requests that exceed one limit; `again` is repeated `times` between `first` and `rest` */
 static const struct {
 	const char *first, *again, *rest;
 	int times;
@@ -40,7 +40,7 @@ static const struct {
      "pages of another origin must not change anything here"},
 };
 
-/* A row of the table of limits of the page that has a status and words. */
+/* Fails unless the page's table of limits has a row with this status and text. */
 static void is_listed(const char *page, int status, const char *detail)
 {
 	char cells[256];
@@ -92,7 +92,7 @@ static void a_full_queue_is_answered_with_its_status_and_the_words_of_the_page(v
 	service_free(service);
 }
 
-/* The sources of the tests of servers, one after the other, with the parts of a string that was broken into lines put together. */
+/* The concatenated sources of the tests of servers, with adjacent string literals joined. */
 static char *tests_of_servers(void)
 {
 	static const char *const patterns[] = {"tests/service/*.c", "tests/long/soak_*.c"};
@@ -122,7 +122,7 @@ static char *tests_of_servers(void)
 	return all;
 }
 
-/* The function of a test whose name has a text in it. */
+/* The first function of the tests whose name contains a text; NULL: none. */
 static const char *function_of(const char *tests, const char *name)
 {
 	static const char start[] = "\nstatic void ";
@@ -134,7 +134,7 @@ static const char *function_of(const char *tests, const char *name)
 	return NULL;
 }
 
-/* Every row of the table names a test, and its words are in one. */
+/* Every row of the table names a test, and its text occurs in the tests. */
 static void every_limit_of_the_page_has_a_test(void **state)
 {
 	char *page = program_file("server/server.md", NULL), *tests = tests_of_servers();
@@ -150,7 +150,7 @@ static void every_limit_of_the_page_has_a_test(void **state)
 		detail[strlen(detail) - 1] = '\0';
 		if (!function_of(tests, by))
 			fail_msg("there is no test with %s in its name", by);
-		// a page says of some in its own words what is answered
+		// some rows describe the answer instead of quoting it
 		const bool quoted = atoi(status) >= 400 && !strstr(detail, "...") && strcmp(detail, "the same") != 0;
 		if (quoted && !strstr(tests, detail))
 			fail_msg("no test has the words: %s", detail);

@@ -11,7 +11,7 @@ static void status_is(struct answer *answer, int status)
 		fail_msg("%d instead of %d: %s", answer->status, status, answer->body);
 }
 
-/* The answer is a problem of that status, with words in its detail; frees it. */
+/* Fails unless an answer is a problem with this status and with `words` in its detail; frees the answer. */
 static void problem_is(struct answer answer, int status, const char *words)
 {
 	status_is(&answer, status);
@@ -69,7 +69,7 @@ static void the_list_is_newest_first_and_pages_by_cursor(void **state)
 	answer_free(&answer);
 }
 
-/* The id of the only study of a list. */
+/* Fails unless a list has this study only. */
 static void list_is_one(const struct service *service, const char *arguments, const char *id)
 {
 	struct answer answer = service_get(service, "/v1/studies?%s", arguments);
@@ -95,7 +95,7 @@ static void the_list_finds_studies_by_their_names_and_by_what_they_mean(void **s
 	list_is_one(service, "name=tow", ids[0]);
 	list_is_one(service, "name=%26%20100%20%25", ids[0]);
 	list_is_one(service, "name=bri", ids[1]);
-	// what it means can be known before it is submitted
+	// validate_only gives the hash of a study before it is submitted
 	struct answer answer = service_ask(service, &(struct ask){.method = "POST",
 	                                                          .path = "/v1/studies?validate_only=true",
 	                                                          .headers = {"Content-Type: application/json"},
@@ -132,7 +132,7 @@ static void list_arguments_that_make_no_sense_are_400(void **state)
 	problem_is(service_get(service, "/v1/studies/0123456789abcdef/results?format="), 400, "must be");
 }
 
-/* A script's variables may be empty. */
+/* Variables of scripts may be empty: empty arguments are ignored. */
 static void list_arguments_that_are_empty_are_as_if_they_were_not_there(void **state)
 {
 	static const char *const arguments[] = {

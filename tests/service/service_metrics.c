@@ -1,4 +1,4 @@
-/* What /metrics says: by the rules of its format, and true. */
+/* /metrics: the rules of its format, and correct values. */
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static bool is_name(const char *text, size_t n)
 	return n > 0;
 }
 
-/* The family a sample belongs to: its own name, or without the ending of a histogram. */
+/* Whether a sample belongs to a family: by its name, for a histogram without the suffix. */
 static bool belongs(const char *sample, const struct family *family)
 {
 	static const char *const ends[] = {"_bucket", "_sum", "_count"};
@@ -34,7 +34,7 @@ static bool belongs(const char *sample, const struct family *family)
 	return false;
 }
 
-/* One sample line: NAME{label="value",...} NUMBER. */
+/* Fails unless a line is a valid sample: NAME{label="value",...} NUMBER. */
 static void sample_is_right(const char *line, const struct family *family)
 {
 	char name[NAME_SIZE];
@@ -67,8 +67,8 @@ static void sample_is_right(const char *line, const struct family *family)
 	assert_true(!grows || value >= 0);
 }
 
-/* The rules of the text format and of promtool's lint: HELP and TYPE once before the samples, each family in one piece,
- * counters end with _total and others do not, units are base units, no line twice. */
+/* Checks the rules of the text format and of promtool's lint: HELP and TYPE once before the samples, each family
+ * contiguous, _total at the end of counters only, base units, no duplicate line. */
 static int families_of(char *text, struct family *families, int most)
 {
 	int n = 0;
@@ -177,7 +177,7 @@ static void the_counts_are_those_of_the_requests_and_studies(void **state)
 	check_near(value_of(answer.body, "pound_http_request_duration_seconds_bucket{le=\"+Inf\"}"), sum, 0);
 	for (const char *at = strstr(answer.body, "_bucket{"); at; at = strstr(at + 1, "_bucket{")) {
 		double value = atof(strchr(at, ' '));
-		assert_true(value >= buckets); // they add up
+		assert_true(value >= buckets); // buckets are cumulative
 		buckets = value;
 	}
 	double studies = 0;

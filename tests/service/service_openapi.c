@@ -1,5 +1,5 @@
-/* The OpenAPI document is true: every operation and every status in it happens, nothing else does, and every answer is
- * what its schema says. */
+/* The OpenAPI document agrees with the server: every operation and status in it occurs, no others occur, and every answer
+ * satisfies its schema. */
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -8,16 +8,16 @@
 #include "tests/support/jsonschema.h"
 #include "tests/support/raw_http.h"
 
-enum { HEAD_ROOM = (1 << 20) + 2 /* a body of one byte too many, and a zero */ };
+enum { HEAD_ROOM = (1 << 20) + 2 /* a body that is one byte too long, and a NUL */ };
 
 enum situation { PLAIN, DAMAGED };
 
-// {done} is a study that has succeeded, {new} one that is queued behind a long one, {none} no study at all
+// {done}: a finished study; {new}: a study queued behind a long one; {none}: an id without a study
 static const struct {
 	enum situation situation;
 	const char *method, *path;
 	const char *headers[2];
-	const char *body; /* NULL: none; "study": a small one; "stored": {done} as a model of UM-Bridge */
+	const char *body; /* NULL: none; "study": a small study; "stored": {done} as a model of UM-Bridge */
 	int status;
 } ASKED[] = {
     {PLAIN, "POST", "/v1/studies", {"Content-Type: application/json"}, "study", 201},
@@ -177,7 +177,7 @@ static const struct {
     {DAMAGED, "GET", "/v1/studies/{done}/figures/indices", {0}, NULL, 500},
 };
 
-enum { HELD = 65 /* connections by which not even probes are answered */ };
+enum { HELD = 65 /* open connections; with these even probes are refused */ };
 
 static const char STUDY_OF_A_TOKEN[] = "Authorization: Bearer 0123456789abcdef0123456789abcdef";
 
@@ -190,7 +190,8 @@ struct world {
 	int n;
 };
 
-/* Sends one request; its answer must be one of the document's. */
+/* Sends one request; fails unless the document has the operation, the status, the headers and the schema of the answer.
+ * Returns the status. */
 static int ask(struct world *world, const char *method, const char *path, const char *const headers[2],
                const char *body)
 {
@@ -236,7 +237,7 @@ static int ask(struct world *world, const char *method, const char *path, const 
 	} heads[] = {{"Location", answer.location}, {"ETag", answer.etag}, {"Retry-After", answer.retry_after}};
 	for (int i = 0; i < 3; i++) {
 		bool listed = reading_has(world->api, "%s/headers/%s", pointer, heads[i].name);
-		// a result that is not there yet may say when to come again; a missing study does not
+		// a 404 has Retry-After only if the result is not available yet
 		if (listed != (*heads[i].value != '\0') && status != 404)
 			fail_msg("%s %s: %d, %s '%s' is%s in the document", method, target, status, heads[i].name,
 			         heads[i].value, listed ? "" : " not");
@@ -272,7 +273,7 @@ static void ask_all(struct world *world, enum situation situation)
 	}
 }
 
-/* Every operation by its method and path, with a body if it takes one; all must answer so. */
+/* Requests every operation, with a body if it takes one; fails unless each is answered with `status`. */
 static void ask_each(struct world *world, const char *header, int status, bool open_too)
 {
 	static char arguments[HEAD_TARGET_MAX + 1];
@@ -359,7 +360,7 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	int held[HELD];
 	for (int i = 0; i < HELD; i++)
 		held[i] = raw_open(world.service);
-	// the one that asked whether the server is there may have been counted still, and this one refused
+	// one of them may have been refused while an earlier connection was still counted
 	const char *const none[2] = {NULL, NULL};
 	for (int i = 0; i < 100 && ask(&world, "GET", "/livez", none, NULL) != 503; i++) {
 		close(held[0]);
@@ -383,7 +384,7 @@ static void every_operation_and_status_of_the_document_happens_and_no_other(void
 	ask_each(&world, NULL, 401, false);
 	int status = 201;
 	const char *const headers[] = {"Content-Type: application/json", STUDY_OF_A_TOKEN};
-	// studies of a minute each: four are open, one is queued, the next one is too many
+	// studies of a minute each: four run, one is queued, the next one is refused
 	char *lengthy = service_study(SERVICE_ROWS, 500, 1);
 	for (int i = 0; i < 6 && status == 201; i++)
 		status = ask(&world, "POST", "/v1/studies", headers, lengthy);

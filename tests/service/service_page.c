@@ -1,4 +1,5 @@
-/* The pages for browsers: what the server gives, word by word; and in Chromium, where there is one, by keys alone. */
+/* The pages for browsers: the answers of the server; and the pages in Chromium, used by the keyboard only (skipped
+ * without Chromium). */
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,7 @@ static const struct {
     {"/page.css", "text/css"},
     {"/page.js", "text/javascript"},
     {"/icon.svg", "image/svg+xml"},
-    // the addresses that the pages themselves make: a filter, the next page, a choice, "use as a start"
+    // addresses in links of the pages: a filter, the next page, a choice of figures, "use as a start"
     {"/?status=queued", "text/html"},
     {"/?status=running&cursor=0123456789abcdef", "text/html"},
     {"/studies/0123456789abcdef?cell=0&output=impulse&index=S1", "text/html"},
@@ -132,7 +133,7 @@ static double number(struct browser *browser, const char *expression)
 	return value;
 }
 
-/* At the text size of the page, and at twice that. */
+/* Fails if the page scrolls sideways at its text size or at twice that size. */
 static void expect_no_sideways_scroll(struct browser *browser)
 {
 	static const char *const sizes[] = {"200%", ""};
@@ -147,7 +148,7 @@ static void expect_no_sideways_scroll(struct browser *browser)
 
 static const char HOSTILE[] = "<img src=x onerror=document.title=1>";
 
-/* A finished study with every figure of its kind and a hostile name; the id is 16 characters. */
+/* Submits a study with hostile names and waits until it is finished. */
 static void finished(const struct service *service, char id[17])
 {
 	char *document = study_documents_with(example_text("sensitivity_small"), "A quick look", HOSTILE);
@@ -170,7 +171,7 @@ static void a_study_is_shown_in_both_schemes_and_widths_without_a_fault(void **s
 		struct browser *browser = opened(service, way % 2, way / 2 ? 320 : 1280);
 		go(browser, service, path);
 		browser_wait(browser, "document.querySelectorAll('#figures svg').length === 1");
-		// the hostile names are text, in the page and in the figure
+		// the hostile names are shown as text, in the page and in the figure
 		char *name = browser_text(browser, "document.getElementById('name').textContent");
 		assert_int_equal(strncmp(name, HOSTILE, strlen(HOSTILE)), 0);
 		free(name);
@@ -178,12 +179,12 @@ static void a_study_is_shown_in_both_schemes_and_widths_without_a_fault(void **s
 		browser_wait(browser, "document.querySelector('img, b') === null");
 		assert_true(browser_has_image(browser, "Sobol' indices with 95 % intervals"));
 		expect_no_sideways_scroll(browser);
-		// the page's sheet has the dark colors of the figure
+		// the style sheet of the page has the light and dark colors of the figure
 		char *ink =
 		    browser_text(browser, "getComputedStyle(document.querySelector('#figures svg .f6')).fill");
 		assert_string_equal(ink, way % 2 ? "rgb(236, 239, 242)" : "rgb(20, 23, 27)");
 		free(ink);
-		// the table below the figure has a head for each column
+		// the table below the figure has a header for each column
 		browser_text(browser, "document.querySelector('#figures details').open = true");
 		browser_wait(browser, "document.querySelectorAll('#figures th[scope=col]').length > 5");
 		go(browser, service, "/");
@@ -218,7 +219,7 @@ static void a_report_does_not_scroll_sideways_however_narrow_or_large_its_text(v
 		browser_go(browser, url);
 		browser_wait(browser, "document.querySelectorAll('figure svg').length === 1");
 		expect_no_sideways_scroll(browser);
-		// with everything open, too
+		// also with all details open
 		free(browser_text(browser, "document.querySelectorAll('details').forEach(one => one.open = true)"));
 		expect_no_sideways_scroll(browser);
 		expect_no_fault(browser);
@@ -258,7 +259,7 @@ static void warnings_are_shown_while_typing_and_with_the_result(void **state)
 	browser_free(browser);
 }
 
-/* What the pages put into addresses leads where it should: the list by status, a study to start from. */
+/* Links of the pages work: the list filtered by status, a study as the start of a new one. */
 static void the_list_is_filtered_and_a_study_is_a_start_for_another(void **state)
 {
 	const struct service *service = *state;
@@ -295,11 +296,12 @@ static void the_list_is_filtered_and_a_study_is_a_start_for_another(void **state
 	free(study);
 }
 
-/* A server with tokens: a wrong one is named as such, the right one is kept for the tab, and what is to be copied has it by name. */
+/* A server with tokens: a wrong token is rejected with a message, the right one is used from then on, and the commands to
+ * copy name the variable POUND_TOKEN. */
 static void a_token_is_asked_for_until_it_is_right(void **state)
 {
 	static const char token[] = "correct-horse-battery-staple-0123456789";
-	const struct service *served = *state; // for a folder of its own
+	const struct service *served = *state; // its folder holds the token file
 	char path[128], id[17];
 	if (!browser_there())
 		skip();
@@ -310,7 +312,7 @@ static void a_token_is_asked_for_until_it_is_right(void **state)
 	fclose(file);
 	chmod(path, 0600);
 	struct service *service = service_new();
-	// the study of one that has none yet
+	// the study is submitted before the server has tokens
 	service_start(service, 1);
 	char *study = service_study(2, 2, 1);
 	service_submit(service, study, id);
@@ -362,7 +364,7 @@ static void a_campaign_is_shown_in_a_second_and_2000_nodes(void **state)
 	double nodes = number(browser, "document.querySelectorAll('*').length");
 	check_report("the page of a campaign: %.0f ms, %.0f nodes", ms, nodes);
 	assert_true(nodes <= PAGE_NODES);
-	// how long it takes is a measurement: another process may have the processor
+	// the time is only reported: other processes may use the processor
 	expect_no_fault(browser);
 	browser_free(browser);
 }
@@ -381,7 +383,7 @@ static void a_study_is_made_followed_cancelled_and_deleted_by_keys_while_the_ser
 	browser_tab(browser, "text");
 	browser_type(browser, "{\"kind\": \"response\", \"sceme\": {}}");
 	browser_wait(browser, "document.querySelector('#faults button')?.textContent.includes('/sceme')");
-	// the next place is the fault, which leads to where it is
+	// Tab reaches the button of the problem, which moves the cursor to its position
 	browser_press(browser, "Tab");
 	browser_press(browser, "Enter");
 	browser_wait(browser,
@@ -401,7 +403,7 @@ static void a_study_is_made_followed_cancelled_and_deleted_by_keys_while_the_ser
 	browser_wait(browser, "document.getElementById('server').textContent.includes('does not answer')");
 	service_start(service, 2);
 	if (service->port != port) {
-		// another port was given: what follows is of a page that is loaded from there
+		// the server has another port: load the page from there
 		char path[64], *from = browser_text(browser, "location.pathname");
 		snprintf(path, sizeof path, "%s", from);
 		free(from);

@@ -1,8 +1,8 @@
-/* A study that makes the server crash: it fails after three times, and the others finish.
+/* A study that makes the server crash fails after three crashes, or ten kills, and the others finish.
  *
- * A child process is the server's store and workers; the parent starts it again when it crashes, as systemd would.
- * Its blocks crash instead of running when their study has the poisonous seed: the linker puts __wrap_pound_run_block
- * in the place of pound_run_block. */
+ * A child process runs the server's store and workers; the parent starts it again after a crash, as systemd would.
+ * Blocks of the study with seed POISON crash instead of running: the linker replaces pound_run_block by
+ * __wrap_pound_run_block. */
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -51,12 +51,12 @@ static void submit(struct store *store, int seed)
 	free(document);
 }
 
-/* The server: runs what is queued and ends, if it does not crash. */
+/* The server: runs the queued studies and exits, unless it crashes. */
 static void serve(const char *path)
 {
 	const struct rlimit none = {0, 0};
 	setrlimit(RLIMIT_CORE, &none);
-	// those of the test's framework
+	// remove the signal handlers of the test framework
 	for (int i = 1; i < SIGRTMIN; i++)
 		signal(i, SIG_DFL);
 	struct store *store = store_open(path);
@@ -74,7 +74,7 @@ static void serve(const char *path)
 	_exit(work ? 0 : 1);
 }
 
-/* Serves until it ends well; how often it did not. */
+/* Runs the server until it exits with 0, at most 20 times; returns the number of crashes. */
 static int crashes_of(const struct service *service, const int signals[], int n)
 {
 	int crashes = 0, status = 0;
@@ -123,7 +123,7 @@ static void a_study_of_which_ten_servers_are_killed_fails_and_the_others_finish(
 	assert_non_null(store);
 	for (int i = 0; i < STUDIES; i++)
 		submit(store, i == POISON_AT ? POISON : i);
-	// a server that is stopped in order has not run it in vain
+	// an orderly stop does not count as a kill
 	struct store_claimed claimed;
 	for (int i = 0; i < 20; i++) {
 		assert_int_equal(store_claim(store, INT64_MAX, "", &claimed), STORE_OK);

@@ -1,12 +1,13 @@
-/* Power cuts: what a client was answered is on the disk, whatever the disk makes of what was not synced.
+/* Power cuts: every study, result and progress that a client has received is on the disk after a cut, whatever the disk
+ * does with unsynced writes.
  *
- * A real poundd takes studies, runs them and hands out results while every write, sync, change of size, creation and
- * removal of its database is recorded (tests/support/preload.c), and with them what the client was answered.  A cut is a place in
- * that record.  What was synced before it is there; of the rest, write by write, a part is lost, a part is there, and a
- * part is there in some of its 512-byte sectors, as disks may have it that keep no order.  The database is then opened
- * as after a restart: it must be whole, and have every study and result the client knows of, byte for byte.
+ * A real poundd accepts studies, runs them and sends results.  tests/support/preload.c records every write, sync, change
+ * of size, creation and removal of its database files; the test adds the answers that the client received.  A cut is a
+ * position in that record.  Entries synced before the cut are on the disk.  Each later entry is lost, complete, or (a
+ * write) present in some of its 512-byte sectors, as on a disk that reorders writes.  The test then opens the database
+ * as after a restart: it must be consistent and hold every study and result that the client received, byte for byte.
  *
- * With synchronous=NORMAL the same test must fail, or it would not show anything. */
+ * With synchronous=NORMAL the same test must find lost studies; otherwise it could not detect a missing sync. */
 #include <fcntl.h>
 #include <math.h>
 #include <sqlite3.h>
@@ -21,25 +22,26 @@
 
 enum {
 	STUDIES = 100,
-	BLANKS = 24000, /* in each document, for pages: at 1000 of them the WAL is copied into the database */
+	BLANKS =
+	    24000, /* added to each document: a WAL of 1000 pages is copied into the database, so it must grow fast */
 	SECTOR = 512,
-	STORE_EVERY = 50, /* cuts that are opened by the server's own code as well */
-	LOOKS = 400,      /* at the progress of a study, at most */
-	SYNC_MS = 100,    /* of the slow disk on which many blocks are committed together */
+	STORE_EVERY = 50, /* every 50th database is also opened by the server's own code */
+	LOOKS = 400,      /* recorded answers about the progress of a study, at most */
+	SYNC_MS = 100,    /* added to a sync, so that many blocks are committed together */
 };
 
-/* What the client knows: that study i is stored (number i), and its result (number STUDIES + i). */
+/* Answers that the client received: number i, study i is stored; number STUDIES + i, its result. */
 static struct known_study {
 	char id[17];
 	char *bytes; /* the result */
 	size_t length;
 } answered[STUDIES];
 
-/* Runs of its blocks, as the client knows (number 2 * STUDIES + i); 0: not asked. */
+/* Finished runs in recorded progress i (answer number 2 * STUDIES + i); 0: no such answer. */
 static int64_t runs_answered[LOOKS];
 enum { N_TOLD = 2 * STUDIES + LOOKS };
 
-/* A file as it is, and as it would be after a cut. */
+/* Content of a file: the synced part of the record, or the file after a cut. */
 struct image {
 	uint8_t *bytes;
 	int64_t size, capacity;
@@ -82,7 +84,7 @@ static unsigned pick(unsigned n)
 
 enum part { NOTHING, SOME, ALL };
 
-/* Does to a file what an entry of the record says, or a part of it. */
+/* Applies an entry of the record to a file, in full or in part. */
 static void play(struct image *image, const struct faults_entry *entry, enum part part)
 {
 	const uint8_t *bytes = (const uint8_t *)(entry + 1);
@@ -91,7 +93,7 @@ static void play(struct image *image, const struct faults_entry *entry, enum par
 	switch ((enum faults_event)entry->event) {
 	case FAULTS_OPEN:
 	case FAULTS_UNLINK:
-		// its bytes are settled by another sync, before this or after
+		// the content of the file is synced separately, before or after
 		image->exists = entry->event == FAULTS_OPEN;
 		break;
 	case FAULTS_TRUNCATE:
@@ -111,7 +113,7 @@ static void play(struct image *image, const struct faults_entry *entry, enum par
 	}
 }
 
-/* Entries whose effect is not synced at some place in the record. */
+/* Entries that are not synced at the current position of the record. */
 struct pending {
 	const struct faults_entry **entries;
 	int n, capacity;
@@ -127,7 +129,7 @@ static void pend(struct pending *pending, const struct faults_entry *entry)
 	pending->entries[pending->n++] = entry;
 }
 
-/* A creation or removal is on the disk when the folder is synced, everything else when its file is. */
+/* A creation or removal is on the disk when the folder is synced, a write or change of size when its file is. */
 static bool settled_by(const struct faults_entry *entry, const struct faults_entry *sync)
 {
 	bool of_folder = entry->event == FAULTS_OPEN || entry->event == FAULTS_UNLINK;
@@ -157,7 +159,7 @@ static void write_file(const char *path, const struct image *image)
 	close(file);
 }
 
-/* The blob that a query about study `id` gives; false: none, or the database cannot be read. */
+/* Whether study `id` has document `name` with these bytes (NULL: any); false also if the database cannot be read. */
 static bool has(sqlite3_stmt *question, int64_t id, const char *name, const char *bytes, size_t length)
 {
 	sqlite3_bind_int64(question, 1, id);
@@ -170,12 +172,12 @@ static bool has(sqlite3_stmt *question, int64_t id, const char *name, const char
 }
 
 struct damage {
-	int cuts, corrupt, lost; /* cuts, those with a database that is not whole, or not all that was answered */
-	int opened;              /* by the server's code */
-	int syncs, checkpoints;  /* in the record: of any file, of the database */
+	int cuts, corrupt, lost; /* all cuts; cuts with an inconsistent database; cuts that lost answered data */
+	int opened;              /* databases opened by the server's code */
+	int syncs, checkpoints;  /* syncs in the record: of any file; of the database file */
 };
 
-/* Runs in all blocks, if that is what the studies say as well. */
+/* Runs in all blocks; -1: no block, or the table of studies has another sum. */
 static int64_t blocks_runs(sqlite3 *db)
 {
 	sqlite3_stmt *sum = NULL;
@@ -190,7 +192,7 @@ static int64_t blocks_runs(sqlite3 *db)
 	return runs;
 }
 
-/* Opens what a cut left, and compares it with what was answered before. */
+/* Opens the database that a cut left and compares it with the answers before the cut. */
 static void judge(const char *path, const bool known[N_TOLD], struct damage *damage)
 {
 	sqlite3 *db;
@@ -225,7 +227,7 @@ static void judge(const char *path, const bool known[N_TOLD], struct damage *dam
 	}
 }
 
-/* Cuts the power at `n` places of the record that are drawn, and judges each. */
+/* Cuts the power at n random positions of the record and judges each database. */
 static struct damage cut(const struct record *record, int n)
 {
 	struct damage damage = {0};
@@ -252,7 +254,7 @@ static struct damage cut(const struct record *record, int n)
 			damage.checkpoints += entry->file == FAULTS_DATABASE;
 		} else
 			pend(&pending, entry);
-		// as many cuts at this place as fall on it when n are drawn from all places
+		// number of cuts at this entry when n cuts are spread at random over all entries
 		for (int left = n - damage.cuts; left > 0 && (int)pick((unsigned)(entries - entry_number)) < left;
 		     left--) {
 			for (int f = 0; f < FAULTS_FOLDER; f++) {
@@ -275,7 +277,7 @@ static struct damage cut(const struct record *record, int n)
 	return damage;
 }
 
-/* A server at work, and the record of its disk. */
+/* Runs studies on a server; returns the record of its disk. */
 static struct record recorded(bool normal)
 {
 	struct service *service = service_new();
@@ -314,7 +316,7 @@ static struct record recorded(bool normal)
 	return record;
 }
 
-/* The same of a server that commits many blocks at a time, its client looking at the progress. */
+/* Likewise on a slow disk, so that a commit has many blocks, while a client requests the progress. */
 static struct record blocks_recorded(double *blocks_a_commit)
 {
 	enum { ROWS = 6 * SERVICE_ROWS, SIGNALS = 5 };
@@ -390,7 +392,7 @@ static void what_a_client_was_answered_is_on_the_disk_whatever_the_moment_of_a_p
 	assert_int_equal(damage.corrupt, 0);
 	assert_int_equal(damage.lost, 0);
 	assert_true(damage.opened > 0);
-	// a WAL that was never copied into the database would be half the test
+	// the WAL was copied into the database, so cuts during that copy are tested
 	assert_true(damage.checkpoints > 2);
 }
 
@@ -401,7 +403,6 @@ static void the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_comm
 	assert_true(cut_of(true, N).lost > N / 4);
 }
 
-// first, for what the others are answered stays known
 CHECK_MAIN(cmocka_unit_test(a_cut_loses_no_block_of_a_commit_that_returned),
            cmocka_unit_test(what_a_client_was_answered_is_on_the_disk_whatever_the_moment_of_a_power_cut),
            cmocka_unit_test(the_same_cuts_lose_studies_when_the_disk_is_not_synced_at_every_commit))

@@ -1,4 +1,4 @@
-/* Many studies, and studies that are not wanted any more. */
+/* The queue: many studies, cancelled and deleted studies, limits of time, CPU and disk. */
 #include <dirent.h>
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "schema/json/json_pointer.h"
 #include "tests/support/service.h"
 
-/* a study that takes long enough to be asked about while it runs */
+/* a study that runs long enough for requests in the meantime */
 enum { ROWS = SERVICE_ROWS, SIGNALS = 5 };
 
 static double seconds(void)
@@ -39,7 +39,7 @@ static void two_hundred_queued_studies_all_finish(void **state)
 		service_submit(service, study, last);
 		free(study);
 	}
-	// the oldest goes first, so that little is left when the youngest is done
+	// the oldest study runs first, so few are left when the newest is done
 	assert_true(service_wait(service, last, "succeeded", 0));
 	service_stop(service);
 	service_start(service, 2);
@@ -53,7 +53,7 @@ static void two_hundred_queued_studies_all_finish(void **state)
 	assert_int_equal(service_number(service, "SELECT count(*) FROM document WHERE name = 'result'"), N + 1);
 }
 
-/* Submits a study, waits until a part of its runs is done, and asks for its end. */
+/* Submits a study, waits until a fraction of its runs is done, and ends it by a request. */
 static void ended_by(struct service *service, double part, const char *method, const char *rest, int status,
                      char id[17])
 {
@@ -88,7 +88,7 @@ static void a_study_can_be_cancelled_at_any_moment(void **state)
 	free(study);
 }
 
-/* Submits a study of one run that takes long, a hundred thousand bounces a second, and waits until it runs. */
+/* Submits a study of one long run (about 1e5 impacts per second) and waits until it runs. */
 static void submit_long(struct service *service, char id[17])
 {
 	enum { SAMPLES = 300000 };
@@ -124,7 +124,7 @@ static void one_run_of_many_minutes_is_cancelled_and_holds_no_server_that_is_to_
 
 static void a_queued_study_has_its_place_in_the_queue(void **state)
 {
-	enum { LONG = 2, STUDIES = 8 }; // one for each worker
+	enum { LONG = 2, STUDIES = 8 }; // LONG: one for each worker
 	struct service *service = *state;
 	char id[17];
 	for (int i = 0; i < STUDIES; i++) {
@@ -138,11 +138,11 @@ static void a_queued_study_has_its_place_in_the_queue(void **state)
 	struct answer answer = service_get(service, "/v1/studies?limit=%d", STUDIES);
 	struct reading *page = answer_read(&answer);
 	int queued = 0;
-	// the oldest is the next
+	// the list is newest first, the oldest queued study runs next
 	for (int i = STUDIES - 1; i >= 0; i--)
 		if (!strcmp(reading_text(page, "/studies/%d/status", i), "queued")) {
 			check_near(reading_number(page, "/studies/%d/queue_position", i), ++queued, 0);
-			// no study is expected to have started before it was made
+			// no study is expected to start before it was created
 			assert_int_equal(strlen(reading_text(page, "/studies/%d/expected_start", i)),
 			                 strlen("2026-01-01T00:00:00Z"));
 			assert_true(strncmp(reading_text(page, "/studies/%d/expected_start", i),
@@ -157,7 +157,7 @@ static void a_queued_study_has_its_place_in_the_queue(void **state)
 	answer_free(&answer);
 }
 
-/* Why a study has failed, as far as its first colon. */
+/* Fails unless a study fails with this reason (the start of its error text). */
 static void failed_as(const struct service *service, const char *id, const char *reason)
 {
 	assert_true(service_wait(service, id, "failed", 0));
@@ -174,7 +174,7 @@ static void a_study_that_runs_for_too_long_has_failed(void **state)
 	const char *const settings[][2] = {{"POUNDD_TIME_MAX", "1"}, {NULL}};
 	struct service *service = service_with(settings, 2);
 	char ids[2][17], small_id[17], *small = service_study(2, 1, 1);
-	// all workers are inside of a run that does not end
+	// all workers are busy with a run that exceeds the time limit
 	for (int worker = 0; worker < 2; worker++)
 		submit_long(service, ids[worker]);
 	service_submit(service, small, small_id);
@@ -191,7 +191,7 @@ static void a_study_that_takes_far_more_than_the_cpu_limit_has_failed(void **sta
 	(void)state;
 	struct service *service = service_with((const char *const[][2]){{NULL}}, 1);
 	char id[17], small_id[17], *large = service_study(100000, 9, 1), *small = service_study(2, 1, 1);
-	// accepted under another limit, as one is whose estimate is too small
+	// accepted without the CPU limit of the next start, like a study whose estimate is too low
 	service_submit(service, large, id);
 	service_stop(service);
 	setenv("POUNDD_CPU_MAX", "1", 1);
@@ -264,7 +264,7 @@ static void short_studies_end_soon_behind_a_long_one(void **state)
 	assert_true(service_wait(service, long_id, "succeeded", 0));
 	check_report("three short studies behind a long one of %.1f s end after %.2f s", seconds() - start,
 	             short_s);
-	// the order in which studies get their turns changes no byte
+	// the order in which blocks of different studies run changes no byte
 	for (int i = 0; i <= SHORT; i++) {
 		char *study = i < SHORT ? service_study(10, SIGNALS, i) : strdup(long_study);
 		struct service_bytes alone = service_uninterrupted(study, 1);
@@ -277,7 +277,8 @@ static void short_studies_end_soon_behind_a_long_one(void **state)
 	free(long_study);
 }
 
-/* Threads of a process that are nicer than its first one, as workers are, and have had at least `least` seconds of a core. */
+/* Number of threads of a process with a higher nice value than its first thread (worker threads) and at least `least`
+ * seconds of CPU time. */
 static int nice_threads(pid_t pid, double least)
 {
 	char path[64], line[512];
@@ -313,13 +314,13 @@ static void all_workers_run_the_blocks_of_one_study(void **state)
 	free(study);
 	struct answer answer = service_get(service, "/v1/studies/%s/results", id);
 	struct reading *result = answer_read(&answer);
-	// half each would be fair; a tenth is not what a worker gets that came for the last block
+	// an equal share is a half; a worker that ran only the last block has less than a tenth
 	assert_int_equal(nice_threads(service->pid, 0.1 * reading_number(result, "/timing/cpu_s")), 2);
 	reading_close(result);
 	answer_free(&answer);
 }
 
-/* The largest file the server may write; reads go on as they were. */
+/* Limits the size of files that the server writes; reads are not affected. */
 static void limit_files(const struct service *service, rlim_t bytes)
 {
 	const struct rlimit limit = {.rlim_cur = bytes, .rlim_max = RLIM_INFINITY};

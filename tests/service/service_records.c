@@ -42,7 +42,7 @@ static int put(const struct service *service)
 	return status;
 }
 
-/* Whether the record is there, with its bytes. */
+/* Whether the server has the record; fails if its bytes differ. */
 static bool is_there(const struct service *service)
 {
 	struct answer answer = service_get(service, "%s", stored()->path);
@@ -57,7 +57,7 @@ static bool is_there(const struct service *service)
 	return there;
 }
 
-/* A response, or with rows a sensitivity study, under one record, named by its SHA-256; for free. */
+/* A study under one record, named by its SHA-256: a response, or with rows > 0 a sensitivity study; the caller frees it. */
 static char *naming(int rows)
 {
 	char *text = NULL, design[400] = "";
@@ -94,7 +94,7 @@ static void a_record_lives_while_a_study_names_it(void **state)
 	struct service *service = *state;
 	char *study = naming(0), ids[2][17];
 	struct answer answer = service_post(service, study);
-	assert_int_equal(answer.status, 422); // it is not there yet
+	assert_int_equal(answer.status, 422); // the record is not stored yet
 	assert_non_null(strstr(answer.body, "/scene/excitation/records/0/sha256"));
 	assert_non_null(strstr(answer.body, "is not stored here: PUT /v1/records/"));
 	answer_free(&answer);
@@ -107,7 +107,7 @@ static void a_record_lives_while_a_study_names_it(void **state)
 		assert_true(service_wait(service, ids[k], "succeeded", 0));
 	}
 	assert_int_equal(service_number(service, "SELECT count(*) FROM record"), 1);
-	// one that is named does not grow too old, and what was posted comes back
+	// a record that a study names does not expire; the posted document is returned unchanged
 	service_stop(service);
 	service_change(service, "UPDATE record SET created = 0");
 	service_start(service, 2);
@@ -145,7 +145,7 @@ static char *beside(const void *with, const struct study_source *of, size_t *len
 	return program_file(FILE_NAME, length);
 }
 
-/* A study killed half way, and the same with its samples in the document, not interrupted. */
+/* A study killed half way against the same study, not interrupted, with the samples of the record in its document. */
 static void a_study_that_names_records_gives_the_bytes_of_its_samples(void **state)
 {
 	struct service *service = *state;
@@ -168,7 +168,7 @@ static void a_study_that_names_records_gives_the_bytes_of_its_samples(void **sta
 	for (int k = 0; k < 2; k++)
 		assert_true(service_wait(service, ids[k], "succeeded", 0));
 	struct service_bytes bytes[] = {service_bytes(service, ids[0]), service_bytes(service, ids[1])};
-	assert_int_equal(erase(service, ids[0], false), 204); // frees its record
+	assert_int_equal(erase(service, ids[0], false), 204); // deletes its record, too
 	assert_false(is_there(service));
 	service_bytes_compare(&bytes[0], &bytes[1]);
 	free(bytes[1].result);
@@ -177,7 +177,7 @@ static void a_study_that_names_records_gives_the_bytes_of_its_samples(void **sta
 	free(study);
 }
 
-/* A record longer than any other body, and the motions of its study, which are those of the command line. */
+/* A record longer than the limit of other bodies, and the motions of its study, equal to those of the command line. */
 static void a_long_record_is_stored_and_its_motions_are_given_back(void **state)
 {
 	enum { SAMPLES = 100000 };
@@ -203,7 +203,7 @@ static void a_long_record_is_stored_and_its_motions_are_given_back(void **state)
 	answer = service_get(service, "/v1/studies/%s/motions?format=npy&signal=1", id);
 	assert_int_equal(answer.status, 200);
 	assert_true(answer.length > 20 * SAMPLES && answer.length < 20 * SAMPLES + 1000);
-	double last[2]; // time and acceleration of the last element: reversed
+	double last[2]; // time and acceleration of the last sample, of the reversed record
 	memcpy(last, answer.body + answer.length - sizeof last, sizeof last);
 	check_near(last[0], (SAMPLES - 1) * 0.005, 1e-9);
 	check_near(last[1], -0.001 * ((SAMPLES - 1) * 7 % 1013), 1e-15);
@@ -238,7 +238,7 @@ static void a_server_killed_anywhere_keeps_a_record_with_its_study(void **state)
 		kills += !spared;
 		service_start(service, 1);
 		const bool there = is_there(service);
-		// a study is there with its record; what was answered holds
+		// every study has its record; answers before the kill remain valid
 		assert_int_equal(service_number(service, "SELECT count(*) FROM study_record"),
 		                 service_number(service, "SELECT count(*) FROM study"));
 		assert_int_equal(service_number(service, "SELECT count(*) FROM study_record WHERE record NOT IN "

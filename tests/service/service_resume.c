@@ -1,4 +1,4 @@
-/* What survives: workers, kills and restarts change nothing in a result. */
+/* The number of workers, kills and restarts do not change a result; databases of other versions. */
 #include <string.h>
 #include <time.h>
 
@@ -9,7 +9,7 @@
 #include "tests/support/program.h"
 #include "tests/support/service.h"
 
-/* the study of these tests: long enough to be killed half way, many blocks */
+/* the study of these tests: many blocks, long enough to be killed half way */
 enum { ROWS = SERVICE_ROWS, SIGNALS = 5, SEED = 7, RUNS = ROWS * 5 * SIGNALS };
 
 static struct service_bytes uninterrupted(int n_workers)
@@ -20,7 +20,7 @@ static struct service_bytes uninterrupted(int n_workers)
 	return bytes;
 }
 
-/* The bytes that all others must equal: of one worker. */
+/* The reference bytes, computed by one worker. */
 static const struct service_bytes *reference(void)
 {
 	static struct service_bytes bytes;
@@ -38,7 +38,7 @@ static void results_are_the_same_bytes_for_any_number_of_workers_language_and_ti
 	}
 }
 
-/* Starts the study, and kills the server when about a third of it is done. */
+/* Starts the study and kills the server when about a third of the runs are done. */
 static void kill_half_way(struct service *service, char id[17])
 {
 	char *study = service_study(ROWS, SIGNALS, SEED);
@@ -50,7 +50,7 @@ static void kill_half_way(struct service *service, char id[17])
 	free(study);
 }
 
-/* Starts the server again; the study must come to the reference. */
+/* Starts the server again; fails unless the study ends with the reference bytes. */
 static void resume(struct service *service, const char *id)
 {
 	service_start(service, 2);
@@ -79,7 +79,7 @@ static void a_killed_study_goes_on_to_the_same_bytes_without_running_stored_bloc
 	free(after);
 }
 
-/* The time between two sessions does not count, that of all sessions does. */
+/* The time of all sessions counts, the time between sessions does not. */
 static void the_time_a_study_takes_is_that_of_all_its_sessions(void **state)
 {
 	struct service *service = service_new();
@@ -120,7 +120,7 @@ static void blocks_of_another_version_are_not_counted(void **state)
 	char id[17];
 	(void)state;
 	kill_half_way(service, id);
-	// of a version that had more blocks, or grew the design further
+	// a surplus block, as from a version with more blocks or a larger design
 	service_change(service,
 	               "INSERT INTO block (study, number, attempt, runs, cpu_s, sha256, content) "
 	               "SELECT study, 1000000, attempt, 1000, 5, zeroblob(32), content FROM block LIMIT 1");
@@ -168,7 +168,7 @@ static void accepted_studies_survive_sigkill(void **state)
 	service_free(service);
 }
 
-/* A server that has stopped, with one study computed. */
+/* A stopped server with one finished study. */
 static struct service *stopped_with_one_result(char id[17])
 {
 	struct service *service = service_new();
@@ -198,7 +198,7 @@ static void a_damaged_result_is_an_error_not_an_answer(void **state)
 	service_free(service);
 }
 
-/* Has the stored result say that another version made it, and its digest with it. */
+/* Changes the version in the stored result, and its digest accordingly. */
 static void made_by_another_version(const struct service *service, const char *id)
 {
 	char sql[512], place[64], sha256[65];
@@ -270,7 +270,7 @@ static void a_server_with_ten_thousand_queued_studies_is_soon_ready(void **state
 	double seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
 	check_report("start with 10,000 studies in the queue: %.2f s", seconds);
 	assert_true(!check_soaks() || seconds < 2);
-	// without their documents they fail, but not all of them are looked at when it listens
+	// the studies fail because they have no documents, but some are still queued when the server listens
 	assert_true(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0);
 	service_stop(service);
 	service_free(service);

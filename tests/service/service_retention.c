@@ -15,7 +15,7 @@ static int status_of(const struct service *service, const char *path, const char
 	return status;
 }
 
-/* Waits until a number of the database is zero. */
+/* Waits until a query gives 0; fails after 10 s. */
 static void zero_await(const struct service *service, const char *sql)
 {
 	for (int i = 0; service_number(service, sql) != 0; i++) {
@@ -24,7 +24,7 @@ static void zero_await(const struct service *service, const char *sql)
 	}
 }
 
-/* Three finished studies of today, of 8 days ago and of 31 days ago, and one of 31 days ago that still runs. */
+/* Finished studies of today, of 8 days ago and of 31 days ago, and one of 31 days ago that still runs. */
 static void studies_and_samples_are_deleted_when_their_time_is_up(void **state)
 {
 	struct service *service = service_new();
@@ -71,7 +71,7 @@ static void studies_and_samples_are_deleted_when_their_time_is_up(void **state)
 	assert_int_equal(
 	    service_number(service, "SELECT count(*) FROM document WHERE study NOT IN (SELECT id FROM study)"),
 	    0);
-	// the result stays, and what is drawn of it; the samples are not taken for damaged
+	// the result and its figures remain; the deleted samples are not reported as damaged
 	assert_int_equal(status_of(service, "/v1/studies/%s/results", ids[1]), 200);
 	assert_int_equal(status_of(service, "/v1/studies/%s/figures/indices", ids[1]), 200);
 	struct answer gone = service_get(service, "/v1/studies/%s/samples", ids[1]);

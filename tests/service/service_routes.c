@@ -1,4 +1,4 @@
-/* Every route and status, asked of a real server.  The server must live on and stop cleanly after each test. */
+/* Every route and status of a real server.  The server must keep running, and stop cleanly after each test. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -14,7 +14,7 @@ static void status_is(struct answer *answer, int status)
 		fail_msg("%d instead of %d: %s", answer->status, status, answer->body);
 }
 
-/* The answer is a problem of that status, with words in its detail; frees it. */
+/* Fails unless an answer is a problem with this status and with `words` in its detail; frees the answer. */
 static void problem_is(struct answer answer, int status, const char *words)
 {
 	status_is(&answer, status);
@@ -141,7 +141,7 @@ static void a_body_over_one_mebibyte_is_413(void **state)
 	                  .body = body};
 	assert_non_null(body);
 	memset(body, ' ', 3 * limit);
-	// blanks are no JSON: what is not too large is malformed
+	// spaces are not JSON: a body within the limit is malformed
 	ask.length = limit;
 	problem_is(service_ask(service, &ask), 400, "");
 	ask.length = limit + 1;
@@ -337,7 +337,7 @@ static void results_come_as_json_or_csv(void **state)
 	problem_is(service_get(service, "/v1/studies/%s/results?format=xml", id), 400, "format must be");
 }
 
-/* Asks the same so often, one connection after the other, and prints how many answers a second there are. */
+/* Requests a path N times on one connection after the other; reports the number of answers per second. */
 static void rate(const struct service *service, const char *path)
 {
 	enum { N = 1000 };
@@ -369,7 +369,7 @@ static void an_answer_is_kept_until_what_it_is_about_changes(void **state)
 	snprintf(path, sizeof path, "/v1/studies/%s/results?format=csv", id);
 	rate(service, path);
 	rate(service, "/v1/studies?limit=100");
-	// the same path is answered as it is asked for
+	// the same path is answered in the requested media type
 	struct answer json = service_get(service, "/v1/studies/%s/results", id);
 	struct answer again = service_ask(
 	    service, &(struct ask){.method = "GET", .path = strtok(path, "?"), .headers = {"Accept: text/csv"}});
@@ -378,7 +378,7 @@ static void an_answer_is_kept_until_what_it_is_about_changes(void **state)
 	assert_string_equal(again.body, csv.body);
 	answer_free(&json);
 	answer_free(&again);
-	// a study more, its end, and a study less
+	// the list changes when a study is added, ends and is deleted
 	service_submit(service, study, other);
 	again = service_get(service, "/v1/studies?limit=100");
 	assert_non_null(strstr(again.body, other));
@@ -477,7 +477,7 @@ static void ask_at_once(struct asker *askers, int n, struct asker asker)
 	}
 }
 
-/* All have the same answer. */
+/* Waits for all answers; fails unless they are equal. */
 static void join_askers(struct asker *askers, int n)
 {
 	for (int i = 0; i < n; i++) {
@@ -527,7 +527,7 @@ static void others_are_answered_while_large_results_become_csv(void **state)
 		others++;
 	}
 	join_askers(askers, ASKERS);
-	// behind the results there would be a few for each of them
+	// if others waited for the results, only a few would be answered per result
 	check_report("%d results of 4,000 signals as CSV: %d others were answered meanwhile", ASKERS, others);
 	assert_true(others > 5 * ASKERS);
 }

@@ -1,4 +1,4 @@
-/* Who may use the server: tokens, addresses, hosts. */
+/* Access to the server: tokens, listen addresses, Host and Origin headers. */
 #include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@ static const char TOKEN[] = "correct-horse-battery-staple-0123456789";
 
 static void token_file(const struct service *service, char path[128])
 {
-	snprintf(path, 128, "%s/log", service->directory); // a name that is cleared away
+	snprintf(path, 128, "%s/log", service->directory); // service_free deletes all files of the folder
 	strcat(path, ".tokens");
 	FILE *file = fopen(path, "w");
 	assert_non_null(file);
@@ -73,12 +73,12 @@ static void without_a_right_token_everything_but_the_probes_is_401(void **state)
 		if (status == 401)
 			fail_msg("%s %s with the right token", operation->method, target);
 	}
-	// an unknown path reveals nothing to a stranger
+	// without a valid token an unknown path is a 401, not a 404
 	assert_int_equal(status_of(service, "GET", "/nowhere", wrong[0], NULL), 401);
 	assert_int_equal(status_of(service, "GET", "/nowhere", right, NULL), 404);
-	// of two headers none counts: a proxy may have seen the other
+	// two Authorization headers are refused: a proxy may have checked the other one
 	assert_int_equal(status_of(service, "GET", "/version", wrong[6], right), 400);
-	assert_int_equal(status_of(service, "GET", "/version", right, "Authorization;"), 400); // an empty one
+	assert_int_equal(status_of(service, "GET", "/version", right, "Authorization;"), 400); // an empty header
 	strcat(right, " \t");
 	assert_int_equal(status_of(service, "GET", "/version", right, NULL), 200);
 	service_stop(service);
@@ -126,7 +126,7 @@ static void an_address_that_is_not_loopback_needs_tokens_or_insecure(void **stat
 	assert_int_not_equal(service_run(service, 1), 0);
 	setenv("POUNDD_LISTEN", "::", 1);
 	assert_int_not_equal(service_run(service, 1), 0);
-	setenv("POUNDD_LISTEN", "localhost", 1); // not in digits
+	setenv("POUNDD_LISTEN", "localhost", 1); // not a numeric address
 	assert_int_not_equal(service_run(service, 1), 0);
 	setenv("POUNDD_LISTEN", "127.0.0.1", 1);
 	setenv("POUNDD_TOKEN_FILE", "/nonexistent", 1);
@@ -143,14 +143,14 @@ static void an_address_that_is_not_loopback_needs_tokens_or_insecure(void **stat
 	service_free(service);
 }
 
-/* What comes of another server on the same port, with a database of its own. */
+/* Starts another server on the same port, with its own database; returns its outcome. */
 static struct program_outcome start_another(const struct service *service, const char *redirection,
                                             char database[128])
 {
 	const char *build = getenv("POUND_BUILD");
 	char command[512];
 	snprintf(database, 128, "%s-other", service->database);
-	// one that listens would not end by itself
+	// a server that listens by mistake would not end by itself
 	snprintf(command, sizeof command, "timeout 20 %s/poundd --port %d --database %s %s",
 	         build ? build : "build/release", service->port, database, redirection);
 	return program_run((const char *const[]){"sh", "-c", command, NULL}, NULL);
@@ -161,7 +161,7 @@ static void a_port_that_another_server_has_is_refused(void **state)
 	char database[128];
 	struct program_outcome other = start_another(*state, "", database);
 	program_expect(&other, 1);
-	// in the last line, and in no other
+	// in the last line only
 	const char *message = strstr(other.err, "Address already in use\n");
 	assert_non_null(message);
 	assert_string_equal(message, "Address already in use\n");
@@ -178,7 +178,7 @@ static void what_is_logged_goes_into_no_file_though_stderr_is_closed(void **stat
 	program_free(&other);
 	snprintf(lock, sizeof lock, "%s-lock", database);
 	assert_int_equal(stat(lock, &about), 0);
-	assert_int_equal(about.st_size, 32); // the number of a study, and what the database file is
+	assert_int_equal(about.st_size, 32); // the number of a study and the identity of the database file
 }
 
 static void a_page_of_the_web_cannot_use_the_server(void **state)
@@ -188,7 +188,7 @@ static void a_page_of_the_web_cannot_use_the_server(void **state)
 	static const char *const types[] = {"Content-Type: text/plain",
 	                                    "Content-Type: application/x-www-form-urlencoded",
 	                                    "Content-Type: multipart/form-data; boundary=x"};
-	// rebinding: the page's own name leads here
+	// DNS rebinding: the name of the page's host resolves to this server
 	assert_int_equal(status_of(service, "GET", "/v1/studies", "Host: evil.example", NULL), 421);
 	assert_int_equal(status_of(service, "GET", "/v1/studies", "Host: evil.example:8437", NULL), 421);
 	// a form, or a script without a preflight, cannot send JSON
@@ -202,7 +202,7 @@ static void a_page_of_the_web_cannot_use_the_server(void **state)
 		assert_int_equal(answer.status, 415);
 		answer_free(&answer);
 	}
-	// what needs no body is refused by its origin, and so is all else that changes something
+	// requests that change something are refused by their origin, also without a body
 	static const char *const foreign[] = {"Origin: http://evil.example", "Origin: null",
 	                                      "Sec-Fetch-Site: cross-site", "Sec-Fetch-Site: same-site"};
 	char id[17], path[64], own[64];
@@ -223,7 +223,7 @@ static void a_page_of_the_web_cannot_use_the_server(void **state)
 	assert_int_equal(status_of(service, "POST", path, own, "Sec-Fetch-Site: same-origin"), 409);
 	path[28] = '\0';
 	assert_int_equal(status_of(service, "DELETE", path, own, NULL), 204);
-	// and the preflight finds no leave
+	// the preflight request is refused
 	assert_int_equal(status_of(service, "OPTIONS", "/v1/studies", "Origin: http://evil.example",
 	                           "Access-Control-Request-Method: POST"),
 	                 405);
@@ -261,8 +261,8 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 	unsetenv("POUNDD_QUEUE_TOKEN_MAX");
 	snprintf(tokens[0], sizeof tokens[0], "Authorization: Bearer %s", TOKEN);
 	snprintf(tokens[1], sizeof tokens[1], "Authorization: Bearer %s", other);
-	// the first four are claimed, two are queued, the next one is too many, but what has a key is there already; the other
-	// client has its own two
+	// the first four studies are claimed, two are queued, the next one is refused; a repeated key is answered with its
+	// stored study; the other token has its own limit of two
 	static const struct {
 		int token, status;
 		bool keyed;
@@ -288,7 +288,7 @@ static void a_token_has_a_share_of_the_queue_and_keys_of_its_own(void **state)
 			assert_string_equal(answer.location, locations[0]);
 		if (posts[i].keyed)
 			strcpy(locations[posts[i].token], answer.location);
-		// until it is claimed
+		// wait until the study is claimed
 		while (i < OPEN && service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'") > 0)
 			usleep(1000);
 		answer_free(&answer);

@@ -1,4 +1,4 @@
-/* Shares: what many connections of one client may take, and what is left for others meanwhile. */
+/* Shares: limits for many connections of one client, and how others are served meanwhile. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +41,7 @@ static void close_many(const int *sockets, int n)
 		close(sockets[i]);
 }
 
-/* How many of them are answered with a status and a text within so many seconds, the others not at all. */
+/* Number of connections answered with a status and a text within `seconds`; fails on any other answer. */
 static int answered(const int *sockets, int n, int status, const char *detail, double seconds)
 {
 	int counted = 0;
@@ -64,13 +64,13 @@ static void who_asks_for_more_than_a_share_is_refused(void **state)
 	struct service *service = *state;
 	int sockets[N];
 	char long_id[17], id[17], get[128];
-	service_histories(service, 20, long_id); // seconds each
+	service_histories(service, 20, long_id); // its samples take seconds
 	finished_study(service, id);
 	snprintf(get, sizeof get, "GET /v1/studies/%s/samples HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
 	         long_id);
 	open_many(service, get, sockets, N);
 	int refused = answered(sockets, N, 503, MANY_LONG, 1);
-	// what is short does not stand in that queue
+	// short answers do not wait in that queue
 	double start = latency_now();
 	struct answer csv = service_get(service, "/v1/studies/%s/results?format=csv", id);
 	assert_int_equal(csv.status, 200);
@@ -123,7 +123,7 @@ static void connections_of_one_address_are_64_on_a_server_that_others_reach(void
 	static struct raw_answer answer;
 	struct service *service = service_with(settings, 1);
 	(void)state;
-	pause_ms(100); // for the connections before to be closed
+	pause_ms(100); // until the earlier connections are closed
 	open_many(service, "GET /livez HTTP/1.1\r\n", sockets, N);
 	for (int i = 0; i < N; i++) {
 		raw_receive(sockets[i], i ? 0.02 : 1, &answer);
@@ -150,7 +150,7 @@ static void more_than_half_of_the_connections_do_not_wait_and_who_hangs_up_frees
 	assert_int_equal(answered(sockets, N, 304, "", 0.5), N - MOST);
 	close_many(sockets, N);
 	int free_again = 0;
-	// a place is free within a second; each of these that finds one waits, and is let go
+	// a slot soon becomes free: then a request waits instead of being answered at once
 	for (int try = 0; try < 100 && !free_again; try++) {
 		pause_ms(50);
 		open_many(service, wait, sockets, 1);
@@ -171,7 +171,7 @@ static void a_probe_is_answered_when_no_more_connections_are_served(void **state
 	(void)state;
 	struct service *service = service_with(settings, 1);
 	finished_study(service, id);
-	pause_ms(100); // for the connections before to be closed
+	pause_ms(100); // until the earlier connections are closed
 	open_many(service, "GET /livez HTTP/1.1\r\n", sockets, N);
 	static const char probe[] = "GET /livez HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n",
 	                  list[] = "GET /v1/studies HTTP/1.1\r\n" HOST "Connection: close\r\n\r\n";
@@ -218,7 +218,7 @@ static void bodies_have_a_budget_and_their_memory_is_given_back(void **state)
 	free(half);
 }
 
-/* A thousand connections of one client: bodies that do not end, polls that wait, samples and heads that do not come. */
+/* A thousand connections of one client: unfinished bodies and headers, waiting polls, requests for samples. */
 static void another_s_status_is_counted_whatever_a_thousand_connections_do(void **state)
 {
 	enum { EACH = 250, KINDS = 4, ASKED = 200 };
@@ -243,7 +243,7 @@ static void another_s_status_is_counted_whatever_a_thousand_connections_do(void 
 		assert_int_equal(answer.status, 200);
 		answer_free(&answer);
 		latency_add(&latencies, asked, latency_now());
-		// and each of the thousand asks for more
+		// connections of each kind send more
 		for (int k = 0; k < KINDS; k++)
 			raw_send(sockets[k * EACH + i % EACH], k == 2 ? "{" : bytes[k], k == 2 ? 1 : strlen(bytes[k]));
 	}

@@ -12,7 +12,7 @@ static char *document_text(void)
 	return study_documents_with(study_documents_floor, "\"histories\": false", "\"histories\": true");
 }
 
-/* What `pound run` makes of a document: its result without timing, or with `samples` the file it writes. */
+/* Runs a document by `pound run`; samples: the file for its samples, NULL: none. */
 static struct program_outcome run(const char *document, const char *samples)
 {
 	struct program_outcome outcome = program_run(
@@ -51,7 +51,7 @@ static void spectra_come_as_json_and_csv(void **state)
 	assert_memory_equal(csv.body, "frequency_hz,pounding.mean_m_s2,", 32);
 	answer_free(&csv);
 	struct answer none = service_get(service, "/v1/studies/%s/samples", id);
-	assert_int_equal(none.status, 409); // its histories are not wanted
+	assert_int_equal(none.status, 409); // the study does not request histories
 	answer_free(&none);
 }
 

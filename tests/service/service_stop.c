@@ -1,6 +1,6 @@
-/* How the server ends: SIGTERM at rest, at work and under load, and a second one.
+/* How the server ends: SIGTERM when idle, while computing and under load; a second SIGTERM; SIGHUP; messages to systemd.
  *
- * How long it takes is printed, and in make soak judged. */
+ * The time of each stop is reported; `make soak` checks it. */
 #include <curl/curl.h>
 #include <pthread.h>
 #include <signal.h>
@@ -24,7 +24,7 @@ static double now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* SIGTERM, and the seconds until it has ended with 0. */
+/* Sends SIGTERM; returns the time until the server has exited with status 0 [s]. */
 static double stop_s(struct service *service)
 {
 	double start = now_s();
@@ -48,7 +48,7 @@ static void an_idle_server_and_one_at_work_end_when_they_are_stopped(void **stat
 	service_submit(service, study, id);
 	assert_true(service_wait(service, id, "running", 1));
 	judge("at work", stop_s(service), 30);
-	// all of it is in the one file
+	// the WAL was copied into the database file and removed
 	char wal[128];
 	snprintf(wal, sizeof wal, "%s-wal", service->database);
 	assert_int_not_equal(access(wal, F_OK), 0);
@@ -67,7 +67,7 @@ static void a_second_signal_ends_it_at_once_and_nothing_is_lost(void **state)
 	kill(service->pid, SIGTERM);
 	assert_int_equal(waitpid(service->pid, &status, 0), service->pid);
 	service->pid = 0;
-	// it may have been quick enough to end by itself
+	// the server may exit before the second signal arrives
 	assert_true((WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) ||
 	            (WIFEXITED(status) && WEXITSTATUS(status) == 0));
 	service_start(service, 2);
@@ -79,11 +79,11 @@ static void a_terminal_that_hangs_up_does_not_end_it(void **state)
 {
 	struct service *service = *state;
 	kill(service->pid, SIGHUP);
-	// a process that a signal has ended does not end with 0
+	// exit status 0 shows that SIGHUP did not end the process
 	check_report("SIGHUP, and then SIGTERM: ended with 0 after %.2f s", stop_s(service));
 }
 
-/* Short documents of which one block takes a quarter of a minute or more. */
+/* Short documents of which one block takes 15 s or more. */
 #define STOREYS "\"storeys\": 50, \"mass_kg\": 1e5"
 #define LONG \
 	"\"excitation\": {\"signals\": 1, \"frequency_hz\": 2, \"cycles\": 1000, \"time_step_s\": 0.002}}}"
@@ -129,7 +129,7 @@ static void it_ends_soon_whatever_runs_and_so_does_a_cancelled_study(void **stat
 		double s = stop_s(service);
 		check_report("SIGTERM while %s run: ended with 0 after %.2f s", lengthy[i].what, s);
 		assert_true(s < (check_soaks() ? 0.5 : 5));
-		// it goes on at the next start, and is not held up by it
+		// the interrupted study is queued for the next start
 		assert_int_equal(service_number(service, "SELECT count(*) FROM study WHERE status = 'queued'"), 1);
 		service_free(service);
 	}
@@ -143,7 +143,7 @@ static struct {
 	atomic_int n, answered, unanswered, seed;
 } load = {.lock = PTHREAD_MUTEX_INITIALIZER};
 
-/* Submits and looks until the server has gone. */
+/* Submits studies until the server no longer answers. */
 static void *client(void *unused)
 {
 	for (bool there = true; there;) {
@@ -158,7 +158,7 @@ static void *client(void *unused)
 		there = answer.status != 0;
 		load.answered += there;
 		load.unanswered += !there;
-		// an answer is whole, whatever it says
+		// every answer is complete
 		if (there) {
 			struct reading *body = answer_read(&answer);
 			assert_true(answer.status == 201 || answer.status == 503);
@@ -176,7 +176,7 @@ static void *client(void *unused)
 	return unused;
 }
 
-/* Clients that wait for a change of a study that is finished, so that only the end of the server ends their waiting. */
+/* Starts clients that wait for a change of a finished study, so that only the end of the server ends their wait. */
 static void waiters_start(const struct service *service, const char *id, int sockets[WAITERS])
 {
 	char bytes[256];
@@ -192,14 +192,14 @@ static void waiters_start(const struct service *service, const char *id, int soc
 	answer_free(&now);
 }
 
-/* Whether a head and as many bytes as it says are there. */
+/* Whether a text has a header and a body of the length in Content-Length. */
 static bool is_whole(const char *text)
 {
 	const char *length = strstr(text, "Content-Length: "), *body = strstr(text, "\r\n\r\n");
 	return length && body && strlen(body + 4) == strtoul(length + strlen("Content-Length: "), NULL, 10);
 }
 
-/* What came of them: answered 503 in full, or closed without a byte. */
+/* Counts waiting clients that got a complete 503, and those whose connection was closed without a byte. */
 static void waiters_end(int sockets[WAITERS], int *answered, int *closed)
 {
 	for (int i = 0; i < WAITERS; i++) {
@@ -252,7 +252,7 @@ static void a_server_that_ends_under_load_keeps_all_that_it_accepted(void **stat
 	free(study);
 }
 
-/* Nearly two million lines would take seconds: the client that asked for them learns that the server stops. */
+/* A history of nearly two million lines would take seconds; its client gets 503 when the server stops. */
 static void a_history_that_is_being_computed_ends_with_the_server(void **state)
 {
 	struct service *service = *state;
@@ -290,7 +290,7 @@ static void twenty_more_servers_on_one_database_are_refused(void **state)
 	free(study);
 }
 
-/* The next message to systemd. */
+/* Fails unless the next message to systemd is `want`. */
 static void expect_notice(int end, const char *want)
 {
 	char text[64];
@@ -318,7 +318,7 @@ static void systemd_is_notified_when_it_is_ready_alive_and_stopping(void **state
 	expect_notice(end, "WATCHDOG=1");
 	expect_notice(end, "WATCHDOG=1");
 	service_stop(service);
-	// more of the same may lie between
+	// more watchdog messages may come before the last one
 	char last[64] = "";
 	for (ssize_t n; (n = recv(end, last, sizeof last - 1, MSG_DONTWAIT)) > 0;)
 		last[n] = '\0';

@@ -1,4 +1,4 @@
-/* Handing over studies: twice by one key, more than there is room for, more than a server takes, and hostile texts. */
+/* Submission of studies: repeated keys, a full queue, studies over the limits, hostile texts. */
 #include <dirent.h>
 #include <pthread.h>
 #include <string.h>
@@ -76,7 +76,7 @@ static void a_key_is_known_after_a_crash_and_to_one_body_only(void **state)
 	problem_is(&clash, 422, "idempotency-key-reused");
 	struct answer free_of_key = service_post_keyed(service, study, NULL);
 	assert_string_not_equal(free_of_key.location, first.location);
-	// a study that is gone takes its key along
+	// the key of a deleted study can be used again
 	struct answer gone = service_ask(service, &(struct ask){.method = "DELETE", .path = first.location});
 	assert_int_equal(gone.status, 204);
 	struct answer fresh = service_post_keyed(service, other, "\"a key, \xc3\xa4\"");
@@ -126,7 +126,7 @@ static void a_full_queue_is_503_until_there_is_room(void **state)
 	static const char *const settings[][2] = {{"POUNDD_QUEUE_MAX", "3"}, {NULL}};
 	(void)state;
 	struct service *service = service_with(settings, 1);
-	enum { OPEN = 4 }; // studies that take turns
+	enum { OPEN = 4 }; // studies that run at a time
 	char *study = service_study(20 * SERVICE_ROWS, 5, 1), id[17], path[64];
 	for (int i = 0; i < OPEN; i++) {
 		service_submit(service, study, id);
@@ -194,7 +194,7 @@ static void a_study_over_a_limit_is_refused_with_the_limit_and_what_was_asked(vo
 static void a_study_beyond_all_measure_is_refused_without_making_it(void **state)
 {
 	struct service *service = *state;
-	// 10^12 runs: rows x samples x signals
+	// 3e11 runs: 1e6 rows x 3 samples x 1e5 signals
 	static const char study[] =
 	    "{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [{\"frequency_hz\": 2}, {\"frequency_hz\": "
 	    "3}], "
@@ -251,7 +251,8 @@ static const char *const HOSTILE[] = {"' OR '1'='1",
                                       "*/",
                                       ";"};
 
-/* The v-th form of a hostile text, as part of a JSON text: as it is, or inside what it may be cut out of. */
+/* Form v of a hostile text in a JSON string: unchanged, or between characters that may close or open a quotation, a
+ * comment or an expression. */
 enum { FORMS = 13 };
 
 static void form(const char *text, int v, char formed[400])
@@ -263,7 +264,7 @@ static void form(const char *text, int v, char formed[400])
 	snprintf(formed, 400, "%s%s%s", forms[v][0], text, forms[v][1]);
 }
 
-/* A text as part of a target: all but letters and digits escaped. */
+/* Percent-encodes every byte of a text for a request target. */
 static void escape(const char *text, char *escaped)
 {
 	for (; *text; text++)
@@ -317,8 +318,8 @@ static void hostile_texts_are_names_like_any_other_and_never_questions(void **st
 	assert_int_equal(service_number(service, "SELECT count(*) FROM study"), n);
 }
 
-/* Every file of JSONTestSuite (its folder in JSONTESTSUITE_DIR) as a study: none is one, but only what is not JSON is
- * malformed. */
+/* Every file of JSONTestSuite (folder in JSONTESTSUITE_DIR) posted as a study: none is a valid study, but only files that
+ * are not JSON are malformed. */
 static void the_public_suite_is_posted_and_judged_as_it_says(void **state)
 {
 	struct service *service = *state;

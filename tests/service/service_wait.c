@@ -1,4 +1,4 @@
-/* Tags of answers, and clients that wait for a study to change. */
+/* Entity tags, and clients that wait for a study to change. */
 #include <pthread.h>
 #include <string.h>
 #include <time.h>
@@ -70,7 +70,7 @@ static void every_form_of_a_known_tag_is_304_on_every_document(void **state)
 	answer_free(&api);
 }
 
-/* The headers of an answer to a raw request, which is one answer. */
+/* Sends a raw request with If-None-Match; fails unless there is exactly one answer. */
 static void asked(const struct service *service, const char *method, const char *path, const char *tags,
                   struct raw_answer *answer)
 {
@@ -126,7 +126,7 @@ static void a_connection_goes_on_after_a_304(void **state)
 	assert_non_null(strstr(answer.text, "\"version\": "));
 }
 
-/* A tag is no reason to say that nothing changed where there is nothing. */
+/* Samples that do not exist are a 409, never a 304. */
 static void a_study_without_samples_is_409_whatever_tag_is_sent(void **state)
 {
 	static const char *const studies[] = {
@@ -181,7 +181,7 @@ static void waiting_without_a_change_gets_304_when_the_time_is_over(void **state
 	assert_int_equal(answer.status, 304);
 	assert_true(now() - start > 0.99);
 	answer_free(&answer);
-	// preferences may come in lines of their own, and all of them are read
+	// all Prefer headers of a request are read
 	char tags[96];
 	snprintf(tags, sizeof tags, "If-None-Match: %s", first.etag);
 	start = now();
@@ -192,7 +192,7 @@ static void waiting_without_a_change_gets_304_when_the_time_is_over(void **state
 	assert_int_equal(answer.status, 304);
 	assert_true(now() - start > 0.99);
 	answer_free(&answer);
-	// an unknown tag, or none to compare with, is answered at once: only the status shows that it did not wait
+	// an unknown tag or no tag is answered at once with 200
 	answer = conditional(service, path, "\"x\"", "wait=30");
 	assert_int_equal(answer.status, 200);
 	answer_free(&answer);
@@ -223,7 +223,7 @@ static void more_seconds_than_there_are_are_the_most_there_are(void **state)
 	service_free(service);
 }
 
-/* A study that is queued behind as many long ones as take turns, so that it changes when the test wants. */
+/* Submits a study behind as many long ones as run at a time, so that it stays queued until the test acts. */
 static void queued_study(const struct service *service, char first[17], char second[17], char tag[64])
 {
 	enum { OPEN = 4 };
@@ -267,7 +267,7 @@ static void waiters_start(struct waiter waiters[WAITERS], const struct service *
 		snprintf(waiters[i].tag, sizeof waiters[i].tag, "%s", tag);
 		assert_int_equal(pthread_create(&waiters[i].thread, NULL, wait_in_thread, &waiters[i]), 0);
 	}
-	// the metric says when all of them wait: an open connection may not have sent its request yet
+	// the metric shows when all of them wait: an open connection may not have sent its request yet
 	static const char metric[] = "\npound_http_waiting ";
 	double waiting = 0;
 	while (waiting < WAITERS) {
@@ -359,7 +359,7 @@ static void a_client_that_waits_and_goes_away_is_no_harm(void **state)
 	service_stop(service);
 }
 
-/* How many requests for samples were answered with a status, by the server's own count. */
+/* Number of requests for samples answered with a status, as /metrics counts them. */
 static int answered(const struct service *service, int status)
 {
 	char line[128];
@@ -371,7 +371,7 @@ static int answered(const struct service *service, int status)
 	return n;
 }
 
-/* Two answers that take long are made at a time: those for clients who have gone must not keep another waiting. */
+/* Two long answers are computed at a time; answers for clients that have disconnected must not delay other clients. */
 static void ask_behind_who_has_gone(const struct service *service, const char *id)
 {
 	enum { GONE = 8 };
@@ -394,8 +394,8 @@ static void ask_behind_who_has_gone(const struct service *service, const char *i
 	double took = now() - before;
 	check_report("an answer of %.2f s: behind those for %d clients who had gone, after %.2f s", one, GONE,
 	             took);
-	assert_true(took < 3 * one); // behind those of all of them it would be GONE / 2 + 1
-	// of some it may not even have seen the request
+	assert_true(took < 3 * one); // after the answers for all GONE clients: (GONE / 2 + 1) * one
+	// some of the requests may not have been read
 	assert_in_range(answered(service, 499), 1, GONE);
 	assert_int_equal(answered(service, 200), 2);
 	assert_int_equal(answered(service, 503), 0);

@@ -1,7 +1,8 @@
-/* `poundd --launcher' and `--worker-listen': the same bytes whatever runs blocks, and whatever happens to workers and server.
+/* `poundd --launcher' and `--worker-listen': results have the same bytes whichever process runs the blocks, also when
+ * workers or the server are killed.
  *
- * A block is a row of the table `block`, whose key is its study and number: a block that is lost has no row, and the runs of a
- * block that is doubled count twice in the study's `runs_done`. */
+ * A finished block is a row of the table `block`, whose key is study and number: a lost block has no row; the runs of a
+ * doubled block count twice in the study's `runs_done`. */
 #include <fcntl.h>
 #include <signal.h>
 #include <string.h>
@@ -17,18 +18,18 @@
 enum {
 	SIGNALS = 5,
 	SEED = 3,
-	ROWS = 4 * SERVICE_ROWS, /* of the study that is disturbed: half a second of one core */
+	ROWS = 4 * SERVICE_ROWS, /* of the disturbed study: half a second on one core */
 	RUNS = ROWS * 5 * SIGNALS,
 	LONG_ROWS = 20 * SERVICE_ROWS,
 	SHORT_ROWS = 20,
-	GONE_MS = 5000,   /* within which workers end after their server */
-	CANCEL_MS = 1000, /* within which a cancelled study leaves its workers */
-	SOON_MS = 2000,   /* within which a short study ends behind a long one */
+	GONE_MS = 5000,   /* limit for workers to exit after their server */
+	CANCEL_MS = 1000, /* limit for a short study submitted after a cancelled one */
+	SOON_MS = 2000,   /* limit for a short study submitted while a long one runs */
 };
 
 static struct {
-	char pids[64];      /* file of the workers' processes */
-	char launcher[256]; /* starts a worker of one thread that adds its process to it */
+	char pids[64];      /* file of the workers' process ids */
+	char launcher[256]; /* command of a worker with one thread; writes its process id to `pids` */
 	char *study;
 	struct service_bytes reference;
 } world;
@@ -58,7 +59,7 @@ static int teardown(void **state)
 	return 0;
 }
 
-/* Starts a server with worker groups and no worker of before. */
+/* Starts a server with worker groups; forgets the workers of earlier servers. */
 static void start(struct service *service, const char *launcher, const char *launchers)
 {
 	assert_int_equal(truncate(world.pids, 0), 0);
@@ -69,7 +70,7 @@ static void start(struct service *service, const char *launcher, const char *lau
 	unsetenv("POUNDD_LAUNCHERS");
 }
 
-/* A sample of /metrics. */
+/* Value of a metric in /metrics. */
 static double metric(const struct service *service, const char *name)
 {
 	char line[64];
@@ -88,7 +89,7 @@ static void wait_groups(const struct service *service, int n)
 		usleep(2000);
 }
 
-/* Fails unless the study has succeeded with the reference's bytes, each of its blocks once. */
+/* Fails unless the study succeeds with the bytes of the reference and counts each block once. */
 static void check_same(const struct service *service, const char *id)
 {
 	assert_true(service_wait(service, id, "succeeded", 0));
@@ -98,7 +99,7 @@ static void check_same(const struct service *service, const char *id)
 	assert_int_equal(service_number(service, "SELECT runs_done FROM study"), RUNS);
 }
 
-/* Whether the study has not ended. */
+/* Whether the study is running. */
 static bool runs(const struct service *service)
 {
 	return service_number(service, "SELECT count(*) FROM study WHERE status = 'running'") == 1;
@@ -119,7 +120,7 @@ static void workers_run_blocks_into_the_database(void **state)
 	char id[17];
 	(void)state;
 	start(service, world.launcher, "2");
-	assert_true(metric(service, "pound_worker_groups") == 0); // no study, no worker
+	assert_true(metric(service, "pound_worker_groups") == 0); // no workers without a study
 	service_submit(service, world.study, id);
 	check_same(service, id);
 	const double n = metric(service, "pound_worker_blocks_total");
@@ -176,7 +177,7 @@ static void a_killed_server_goes_on_and_its_workers_end(void **state)
 		start(service, world.launcher, "2");
 		service_submit(service, world.study, id);
 		for (bool running = true; running && kills < n; kills++) {
-			// some four times a study, at its very start, too
+			// about four kills per study, some at its very start
 			service_wait(service, id, "running", (double)(done - RUNS / 8 + rand() % (RUNS / 2)));
 			service_kill(service);
 			const double gone = groups_gone(world.pids, GONE_MS);
@@ -211,7 +212,7 @@ static void a_cancelled_study_leaves_its_workers(void **state)
 	struct answer answer = service_ask(service, &(struct ask){.method = "POST", .path = path});
 	assert_int_equal(answer.status, 200);
 	answer_free(&answer);
-	// the same workers run the next one: theirs have stopped, and are not taken for it
+	// the same workers stop the cancelled blocks and run the next study
 	const double start_s = groups_now();
 	char *small = service_study(SHORT_ROWS, SIGNALS, SEED);
 	service_submit(service, small, id);
@@ -270,7 +271,7 @@ static void a_stopped_server_ends_its_workers_and_goes_on(void **state)
 	             gone);
 }
 
-/* Blocks of a worker that does not go on run elsewhere, and the study ends without it. */
+/* Other threads run the blocks of a stopped worker, and the study ends without it. */
 static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
 {
 	struct service *service = service_new();
@@ -288,7 +289,7 @@ static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
 	check_same(service, id);
 	check_report("a worker that was stopped with blocks: the study ended after %.1f s, same bytes",
 	             groups_now() - start_s);
-	// nothing of the study is left in the way of the next one, whose blocks the group gets and loses, too
+	// the continued worker and its old blocks do not disturb the next study
 	assert_int_equal(kill(pids[0], SIGCONT), 0);
 	service_submit(service, world.study, other);
 	assert_true(service_wait(service, other, "succeeded", 0));
@@ -296,7 +297,7 @@ static void a_study_does_not_wait_for_a_worker_that_hangs(void **state)
 	service_free(service);
 }
 
-/* A launcher in bash that greets with a version. */
+/* A launcher in bash whose first message has version 9.9.9. */
 static const char stranger[] =
     "exec bash -c 'IFS=: read -r host port token <<<$POUND_WORKER; exec 3<>/dev/tcp/$host/$port; "
     "printf "
@@ -354,7 +355,7 @@ static void options_of_workers_that_do_not_fit_are_an_error(void **state)
 	}
 }
 
-/* Starts a server that listens for workers there. */
+/* Starts a server that listens for workers at an address. */
 static void start_listening(struct service *service, const char *at, const char *token)
 {
 	setenv("POUNDD_WORKER_LISTEN", at, 1);
@@ -392,7 +393,7 @@ static void workers_that_others_start_outlive_servers_and_may_leave_at_any_time(
 			const int i = rand() % WORKERS;
 			for (int k = 0; k < WORKERS; k++)
 				workers[k] = workers[k] ? workers[k] : program_start(worker, "/dev/null", "/dev/null");
-			wait_groups(service, WORKERS); // those of before come again
+			wait_groups(service, WORKERS); // workers of the killed server connect again
 			usleep((useconds_t)(rand() % 300000));
 			left += runs(service);
 			assert_int_equal(kill(workers[i], rand() % 2 ? SIGKILL : SIGTERM), 0);
@@ -450,7 +451,7 @@ static void cpu_time_of_worker_groups_counts_toward_the_cpu_limit(void **state)
 	struct service *service = service_new();
 	char id[17], *large = service_study(100000, 9, 1);
 	(void)state;
-	// accepted under another limit
+	// accepted without the CPU limit of the next start
 	service_start(service, 1);
 	service_submit(service, large, id);
 	service_stop(service);
@@ -464,7 +465,7 @@ static void cpu_time_of_worker_groups_counts_toward_the_cpu_limit(void **state)
 	const double all = reading_number(status, "/cpu_s");
 	assert_int_equal(strncmp(reading_text(status, "/error"), "cpu-limit: ", strlen("cpu-limit: ")), 0);
 	check_report("failed as cpu-limit of 3 s after %.2f s, of which the server took %.2f", all, own);
-	// sanitizers take their share of the server's time
+	// sanitizers add CPU time to the server
 	assert_true(all >= 3 && (!SERVICE_MEMORY || own < 0.9 * all));
 	reading_close(status);
 	answer_free(&answer);
