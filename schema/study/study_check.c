@@ -85,7 +85,11 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	const char *excitation = pound_excitation_name(scene->excitation.type);
 	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
 		field = fields_find("/scene/excitation/acceleration_m_s2/*");
-	if (!field && fields_nearest_path(path, input, nearest, sizeof nearest))
+	const int beyond = study_building_beyond(study, path, problems);
+	if (beyond >= 0)
+		problems_add(problems, pointer, "there is no building %d in this scene: the last is building %d",
+		             beyond, study->scene.n_buildings - 1);
+	else if (!field && fields_nearest_path(path, input, nearest, sizeof nearest))
 		problems_add(problems, pointer, "no such field in \"scene\", did you mean \"%s\"?", nearest);
 	else if (!field)
 		problems_add(problems, pointer,
@@ -135,6 +139,13 @@ static bool storeys_overlap(const char *a, const char *b)
 	       pound_field_overlaps(study_check_field(a), study_check_field(b));
 }
 
+static bool path_refused(const struct varied *varied, const struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	snprintf(pointer, sizeof pointer, "/%s/%d/path", varied->list, varied->index);
+	return problems_at(problems, pointer);
+}
+
 static void check_paths(const struct pound_study *study, struct problems *problems)
 {
 	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
@@ -148,7 +159,8 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 			if (all[k].path && strcmp(all[i].path, all[k].path) == 0) {
 				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
 				break;
-			} else if (all[k].path && storeys_overlap(all[i].path, all[k].path)) {
+			} else if (all[k].path && !problems_at(problems, pointer) && !path_refused(&all[k], problems) &&
+			           storeys_overlap(all[i].path, all[k].path)) {
 				problems_add(problems, pointer, "names a story that /%s/%d names too", all[k].list,
 				             all[k].index);
 				break;
@@ -304,8 +316,7 @@ bool study_check_known(const struct pound_study *study, const char *path, const 
 		return false;
 	for (int i = 0; i < n; i++) {
 		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
-		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
-		if (!all[i].path || (problems_at(problems, pointer) && (here || may_mean(&all[i], path))))
+		if (!all[i].path || (path_refused(&all[i], problems) && (here || may_mean(&all[i], path))))
 			return false;
 		snprintf(pointer, sizeof pointer, "/%s/%d", all[i].list, all[i].index);
 		if (problems_over(problems, pointer))

@@ -424,7 +424,8 @@ static const char *chosen(const cJSON *object, const char *pattern)
 	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
 }
 
-/* Looks up kind, excitation, solver and sweeps before the document is read, as they decide which members are used. */
+/* Looks up kind, excitation, solver and sweeps before the document is read, as they decide which members are used, and refuses
+ * buildings beside oscillators. */
 static void foresee(struct reader *r, const cJSON *document)
 {
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
@@ -434,6 +435,8 @@ static void foresee(struct reader *r, const cJSON *document)
 	r->kind = chosen(document, "/kind");
 	r->excitation = chosen(excitation, "/scene/excitation/type");
 	r->solver = chosen(solver, "/solver/method");
+	if (cJSON_HasObjectItem(scene, "buildings") && cJSON_HasObjectItem(scene, "oscillators"))
+		problems_add(r->problems, "/scene/buildings", "is not used when oscillators are given");
 }
 
 static void outputs_default(struct pound_study *study)
