@@ -498,7 +498,7 @@ static void signals_count(struct pound_excitation *e)
  *
  * Given    document  -         -       its text may be any bytes
  * Returns  value     -         -       the study; NULL: failed, see problems->status
- *          problems  -         -       problems in the order of the document, then problems between members
+ *          problems  -         -       problems in the order of the document
  * Memory   allocates one block, about 5 bytes per byte of text, and the samples of files; free with study_free
  *
  * Test     unit_study_cases, unit_study_json, unit_suite
@@ -542,13 +542,14 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	reader_undesigned(&r, document);
 	signals_count(&study->scene.excitation);
 	reader_split(&r, document);
-	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
 	reader_groups_find(study);
 	study_split_lay(study, problems);
 	study_check(study, problems);
+	problems_sort(problems, document);
+	cJSON_Delete(document);
 	if (problems->n) {
 		study_free(study);
 		return NULL;
