@@ -171,7 +171,7 @@ const struct field fields[] = {
 	{"/scene/buildings/*/stiffness_profile", FIELD_EACH, BUILDING(profile), 1, 0, INFINITY, FIELD_OPEN, "",
 	 .text = "initial stiffness of the stories relative to each other; only with frequency_hz"},
 	{"/scene/buildings/*/height_m", FIELD_EACH, BUILDING(height), 3, 0, INFINITY, FIELD_OPEN, "m",
-	 .text = "heights of the stories, for drift ratios", .fixed = "it only divides drifts to drift ratios"},
+	 .text = "heights of the stories, for drift ratios"},
 	{"/scene/buildings/*/damping", FIELD_CHOICE, BUILDING(damping), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "damping model, built with the initial stiffness", .choice = pound_damping_name},
 	{"/scene/buildings/*/damping_ratio", FIELD_EACH, BUILDING(damping_ratio), 0.05, 0, 1,

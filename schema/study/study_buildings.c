@@ -524,6 +524,15 @@ static bool yields_given(const struct pound_study *study, int b)
 	return given;
 }
 
+/* Whether a result has drift ratios, which heights divide; every response has. */
+static bool has_drift_ratios(const struct pound_study *study)
+{
+	bool has = study->kind == POUND_KIND_RESPONSE;
+	for (int o = 0; o < study->n_outputs; o++)
+		has |= strstr(pound_output_name(study->outputs[o]), "drift_ratio") != NULL;
+	return has;
+}
+
 static const char *building_idle(const struct pound_study *study, const struct field *field,
                                  struct field_place place)
 {
@@ -535,6 +544,8 @@ static const char *building_idle(const struct pound_study *study, const struct f
 	if (place.index >= 0 && place.index >= study_storeys_least(study, place.element))
 		return storeys_sweep(study, place.element) ? "the building has no such story in every cell"
 		                                           : "the building has no such story";
+	if (strcmp(name, "height_m") == 0 && !has_drift_ratios(study))
+		return "has no effect: no output is a drift ratio";
 	if (strcmp(name, "stiffness_n_m") == 0 && !by_stiffness)
 		return "has no effect: frequency_hz is given";
 	if ((strcmp(name, "frequency_hz") == 0 || strcmp(name, "stiffness_profile") == 0) && by_stiffness)

@@ -57,6 +57,7 @@ static bool effect_known(const struct pound_study *study, const struct field *fi
 	} rows[] = {
 	    {"/scene/oscillators/", {"/scene/oscillators/%d"}},
 	    {"/scene/buildings/", {"/scene/buildings/%d"}},
+	    {"/scene/buildings/*/height_m", {"/outputs"}},
 	    {"/scene/contacts/", {"/scene/contacts/%d", "/outputs"}},
 	    {"/scene/contact/", {"/scene/contact", "/scene/contacts", "/outputs"}},
 	    {"/scene/law/", {"/scene/law", "/scene/buildings", "/scene/oscillators"}},
