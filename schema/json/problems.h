@@ -38,6 +38,10 @@ void problems_add(struct problems *problems, const char *pointer, const char *fo
 void problems_exceed(struct problems *problems, const char *pointer, double requested, double limit,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
 
+struct cJSON;
+/* Puts the problems in the order of the document that they are in; absent members come after all others of their object. */
+void problems_sort(struct problems *problems, const struct cJSON *document);
+
 /* Whether a value at or below a pointer has a problem, or may have one because the list is full. */
 bool problems_at(const struct problems *problems, const char *pointer);
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "schema/study/field_types.h"
-#include "schema/study/near_name.h"
 #include "schema/study/study_json.h"
 #include "schema/study/study_suite.h"
 
@@ -172,7 +171,7 @@ const struct field fields[] = {
 	{"/scene/buildings/*/stiffness_profile", FIELD_EACH, BUILDING(profile), 1, 0, INFINITY, FIELD_OPEN, "",
 	 .text = "initial stiffness of the stories relative to each other; only with frequency_hz"},
 	{"/scene/buildings/*/height_m", FIELD_EACH, BUILDING(height), 3, 0, INFINITY, FIELD_OPEN, "m",
-	 .text = "heights of the stories, for drift ratios", .fixed = "it only divides drifts to drift ratios"},
+	 .text = "heights of the stories, for drift ratios"},
 	{"/scene/buildings/*/damping", FIELD_CHOICE, BUILDING(damping), 0, 0, 0, FIELD_CLOSED, "",
 	 .text = "damping model, built with the initial stiffness", .choice = pound_damping_name},
 	{"/scene/buildings/*/damping_ratio", FIELD_EACH, BUILDING(damping_ratio), 0.05, 0, 1,
@@ -583,19 +582,13 @@ static bool path_pattern(const char *path, char *pattern, size_t size, int indic
 	return *path == '/' && !strchr(path, '*');
 }
 
-/* Whether an index is below the largest number of elements of a list. */
-static bool within_list(const struct field *list, int index)
+bool fields_may_have(const char *pattern, int index)
 {
-	return list && index >= 0 && index < list->max;
-}
-
-/* The list at the start of a pattern: the part before the first "/\*". */
-static const struct field *list_of(const char *pattern)
-{
-	char list[256];
+	char name[256];
 	const char *star = strstr(pattern, "/*");
-	snprintf(list, sizeof list, "%.*s", star ? (int)(star - pattern) : 0, pattern);
-	return fields_find(list);
+	snprintf(name, sizeof name, "%.*s", star ? (int)(star - pattern) : 0, pattern);
+	const struct field *list = fields_find(name);
+	return list && index >= 0 && index < list->max;
 }
 
 /* Finds the field that a JSON Pointer into "scene" names.
@@ -614,7 +607,7 @@ const struct field *fields_scene(const char *path, struct field_place *place)
 	if (!path_pattern(path, pattern, sizeof pattern, indices))
 		return NULL;
 	const struct field *field = fields_find(pattern);
-	if (indices[0] >= 0 && !within_list(list_of(pattern), indices[0]))
+	if (indices[0] >= 0 && !fields_may_have(pattern, indices[0]))
 		return NULL;
 	*place = (struct field_place){indices[0], indices[1]};
 	if (field)
@@ -627,29 +620,8 @@ const struct field *fields_scene(const char *path, struct field_place *place)
 	return field && field->type == FIELD_EACH && indices[1] < POUND_STOREYS_MAX ? field : NULL;
 }
 
-bool fields_nearest_path(const char *path, char *nearest, size_t size)
+bool fields_vary(const struct field *field, bool input)
 {
-	int best = INT32_MAX - 1;
-	// an index above 1 may count from 1: prefer the second element
-	const bool beyond = path[strcspn(path, "23456789")];
-	if (strncmp(path, "/scene/", 7) == 0) // a common mistake: paths already start in the scene
-		path += strlen("/scene");
-	for (int i = 0; i < fields_count; i++) {
-		if (strncmp(fields[i].pattern, "/scene/", 7) != 0 || fields[i].fixed ||
-		    !field_types[fields[i].type].number)
-			continue;
-		char candidate[256];
-		snprintf(candidate, sizeof candidate, "%s", fields[i].pattern + strlen("/scene"));
-		char *stars[2] = {strchr(candidate, '*'), strrchr(candidate, '*')};
-		for (int index = 0; index < (stars[0] ? 4 : 1); index++) {
-			for (int k = 0; k < 2 && stars[0]; k++)
-				*stars[k] = (char)('0' + (index >> k & 1));
-			int distance = near_name_distance(path, candidate);
-			if (distance < best + (beyond && index > 0)) {
-				best = distance;
-				snprintf(nearest, size, "%s", candidate);
-			}
-		}
-	}
-	return near_name(best, path);
+	return !field->fixed && field_types[field->type].number &&
+	       (!input || field->type == FIELD_REAL || field->type == FIELD_EACH);
 }

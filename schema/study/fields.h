@@ -87,8 +87,15 @@ struct field_place {
 /* The field that a JSON Pointer into "scene" names, and the indices in the pointer; NULL: none. */
 const struct field *fields_scene(const char *path, struct field_place *place);
 
-/* The path of the scene's field nearest to a mistyped path; false: none is near. */
-bool fields_nearest_path(const char *path, char *nearest, size_t size);
+/* Whether the list at the first * of a pattern may have an element with this index. */
+bool fields_may_have(const char *pattern, int index);
+
+/* Whether a sweep may vary a field of the scene or, if `input`, an input. */
+bool fields_vary(const struct field *field, bool input);
+
+/* The path nearest to a mistyped path, of a field that may vary, with the indices of that path if there may be such elements; false:
+ * none is near, and the path is that of a field beside it, or "". */
+bool fields_nearest_path(const char *path, bool input, char *nearest, size_t size);
 
 extern const char
     *const fields_outputs_absent[]; /* names of the outputs of a study that lists none; ends with NULL */

@@ -62,13 +62,15 @@ static void read_building(struct reader *r, const cJSON *node, int i)
 		refuse(r, node, "damping_modes", "is only used with damping \"rayleigh\"");
 }
 
-/* Reads the buildings of a row; offsets in fields.c count from the current building.
+/* Reads the buildings of a row, unless they are refused beside oscillators; offsets in fields.c count from the current building.
  *
  * Test     unit_study_cases
  */
 void reader_buildings(struct reader *r, const struct field *field, const cJSON *node, char *base)
 {
 	(void)base;
+	if (problems_over(r->problems, field->pattern))
+		return;
 	r->study->scene.n_buildings = cJSON_GetArraySize(node); // read_building needs it
 	r->study->scene.n_buildings = reader_each(r, field, node, read_building);
 }
@@ -147,7 +149,7 @@ static void read_row_contact(struct reader *r, const cJSON *node, int i)
 	}
 }
 
-/* Reads the contacts of a row, each as a copy of the scene's contact, and refuses buildings beside oscillators.
+/* Reads the contacts of a row, each as a copy of the scene's contact.
  *
  * Test     unit_row_results: what_a_sweep_varies_is_what_a_document_says
  */
@@ -155,8 +157,6 @@ void reader_contacts(struct reader *r, const cJSON *document)
 {
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
 	const cJSON *node = cJSON_GetObjectItemCaseSensitive(scene, "contacts");
-	if (cJSON_HasObjectItem(scene, "buildings") && cJSON_HasObjectItem(scene, "oscillators"))
-		problems_add(r->problems, "/scene/buildings", "is not used when oscillators are given");
 	if (!cJSON_IsObject(scene) || !node)
 		return;
 	snprintf(r->pointer, sizeof r->pointer, "/scene/contacts");
@@ -383,9 +383,11 @@ static void check_place(const struct pound_study *study, const struct pound_stor
 	if (problems_at(problems, pointer) || problems_over(problems, pointer) || problems_at(problems, wall) ||
 	    problems_over(problems, wall))
 		return;
-	if (place->building >= study->scene.n_buildings || study->scene.buildings[place->building].rigid_wall) {
-		problems_add(problems, pointer, "must be the index of a building that is not a rigid wall, got %d",
-		             place->building);
+	const int last = study->scene.n_buildings - 1;
+	const bool ends_with_wall = study->scene.buildings[last].rigid_wall;
+	if (place->building > last - ends_with_wall) {
+		problems_add(problems, pointer, "must be at most %d, the index of the last building%s, got %d",
+		             last - ends_with_wall, ends_with_wall ? " before the rigid wall" : "", place->building);
 		return;
 	}
 	const int least = study_storeys_least(study, place->building);
@@ -501,6 +503,13 @@ void study_buildings_check(const struct pound_study *study, struct problems *pro
 
 /* ---- varied fields ---- */
 
+int study_building_beyond(const struct pound_study *study, const char *path, const struct problems *problems)
+{
+	int b = -1;
+	const bool row = study->scene.n_buildings > 0 && !problems_over(problems, "/scene/buildings");
+	return row && sscanf(path, "/buildings/%3d/", &b) == 1 && b >= study->scene.n_buildings ? b : -1;
+}
+
 static bool yields_given(const struct pound_study *study, int b)
 {
 	const struct pound_field field = {.type = POUND_FIELD_EACH,
@@ -515,19 +524,28 @@ static bool yields_given(const struct pound_study *study, int b)
 	return given;
 }
 
+/* Whether a result has drift ratios, which heights divide; every response has. */
+static bool has_drift_ratios(const struct pound_study *study)
+{
+	bool has = study->kind == POUND_KIND_RESPONSE;
+	for (int o = 0; o < study->n_outputs; o++)
+		has |= strstr(pound_output_name(study->outputs[o]), "drift_ratio") != NULL;
+	return has;
+}
+
 static const char *building_idle(const struct pound_study *study, const struct field *field,
                                  struct field_place place)
 {
 	const struct pound_building *building = &study->scene.buildings[place.element];
 	const char *name = fields_name(field);
 	const bool by_stiffness = building->stiffness.n > 0;
-	if (place.element >= study->scene.n_buildings)
-		return "there is no such building in this scene";
 	if (building->rigid_wall)
 		return "a rigid wall has no such field";
 	if (place.index >= 0 && place.index >= study_storeys_least(study, place.element))
 		return storeys_sweep(study, place.element) ? "the building has no such story in every cell"
 		                                           : "the building has no such story";
+	if (strcmp(name, "height_m") == 0 && !has_drift_ratios(study))
+		return "has no effect: no output is a drift ratio";
 	if (strcmp(name, "stiffness_n_m") == 0 && !by_stiffness)
 		return "has no effect: frequency_hz is given";
 	if ((strcmp(name, "frequency_hz") == 0 || strcmp(name, "stiffness_profile") == 0) && by_stiffness)

@@ -14,6 +14,9 @@ int study_storeys_most(const struct pound_study *study, int building);
 /* Whether they are known in spite of the problems found. */
 bool study_storeys_known(const struct pound_study *study, int building, const struct problems *problems);
 
+/* Index of the building that a path names although the row has fewer; -1: none. */
+int study_building_beyond(const struct pound_study *study, const char *path, const struct problems *problems);
+
 /* Why varying a field of a row would change nothing; NULL: it may vary. */
 const char *study_row_idle(const struct pound_study *study, const struct field *field,
                            struct field_place place);

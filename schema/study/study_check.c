@@ -57,6 +57,7 @@ static bool effect_known(const struct pound_study *study, const struct field *fi
 	} rows[] = {
 	    {"/scene/oscillators/", {"/scene/oscillators/%d"}},
 	    {"/scene/buildings/", {"/scene/buildings/%d"}},
+	    {"/scene/buildings/*/height_m", {"/outputs"}},
 	    {"/scene/contacts/", {"/scene/contacts/%d", "/outputs"}},
 	    {"/scene/contact/", {"/scene/contact", "/scene/contacts", "/outputs"}},
 	    {"/scene/law/", {"/scene/law", "/scene/buildings", "/scene/oscillators"}},
@@ -85,16 +86,22 @@ static void check_path(const struct pound_study *study, const char *path, bool i
 	const char *excitation = pound_excitation_name(scene->excitation.type);
 	if (strncmp(path, "/excitation/acceleration_m_s2/", 30) == 0)
 		field = fields_find("/scene/excitation/acceleration_m_s2/*");
-	if (!field && fields_nearest_path(path, nearest, sizeof nearest))
+	const int beyond = study_building_beyond(study, path, problems);
+	if (beyond >= 0)
+		problems_add(problems, pointer, "there is no building %d in this scene: the last is building %d",
+		             beyond, study->scene.n_buildings - 1);
+	else if (!field && fields_nearest_path(path, input, nearest, sizeof nearest))
 		problems_add(problems, pointer, "no such field in \"scene\", did you mean \"%s\"?", nearest);
 	else if (!field)
 		problems_add(problems, pointer,
-		             "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"");
+		             *nearest ? "no such field in \"scene\"; one that may vary there is \"%s\""
+		                      : "must be a JSON Pointer into \"scene\", such as \"/contact/restitution\"",
+		             nearest);
 	else if (field->fixed)
 		problems_add(problems, pointer, "this field cannot vary: %s", field->fixed);
 	else if (!field_types[field->type].number)
 		problems_add(problems, pointer, "names an object or a list, not a single field");
-	else if (input && field->type != FIELD_REAL && field->type != FIELD_EACH)
+	else if (!fields_vary(field, input))
 		problems_add(problems, pointer, "this field is not a real number; only a sweep can vary it");
 	else if (problems_over(problems, "/scene/excitation/type") ||
 	         problems_at(problems, "/scene/excitation/type"))
@@ -133,6 +140,13 @@ static bool storeys_overlap(const char *a, const char *b)
 	       pound_field_overlaps(study_check_field(a), study_check_field(b));
 }
 
+static bool path_refused(const struct varied *varied, const struct problems *problems)
+{
+	char pointer[POINTER_SIZE];
+	snprintf(pointer, sizeof pointer, "/%s/%d/path", varied->list, varied->index);
+	return problems_at(problems, pointer);
+}
+
 static void check_paths(const struct pound_study *study, struct problems *problems)
 {
 	struct varied all[POUND_INPUTS_MAX + POUND_SWEEPS_MAX];
@@ -146,7 +160,8 @@ static void check_paths(const struct pound_study *study, struct problems *proble
 			if (all[k].path && strcmp(all[i].path, all[k].path) == 0) {
 				problems_add(problems, pointer, "names the same field as /%s/%d", all[k].list, all[k].index);
 				break;
-			} else if (all[k].path && storeys_overlap(all[i].path, all[k].path)) {
+			} else if (all[k].path && !problems_at(problems, pointer) && !path_refused(&all[k], problems) &&
+			           storeys_overlap(all[i].path, all[k].path)) {
 				problems_add(problems, pointer, "names a story that /%s/%d names too", all[k].list,
 				             all[k].index);
 				break;
@@ -279,13 +294,16 @@ void study_check_reach(const struct pound_study *study, const char *path, double
 	}
 }
 
-/* Whether an invalid path may have been meant for a field: it names no other field, and is not near to the path of one. */
-static bool may_mean(const char *invalid, const char *path)
+/* Whether an invalid path may have been meant for a field that an input or a sweep may vary: it names no other field, and is not
+ * near to the path of one. */
+static bool may_mean(const struct varied *invalid, const char *path)
 {
 	char nearest[128];
 	struct field_place place;
-	return !fields_scene(invalid, &place) &&
-	       (!fields_nearest_path(invalid, nearest, sizeof nearest) || strcmp(nearest, path) == 0);
+	const struct field *field = fields_scene(path, &place);
+	return !fields_scene(invalid->path, &place) && field && fields_vary(field, invalid->name) &&
+	       (!fields_nearest_path(invalid->path, invalid->name, nearest, sizeof nearest) ||
+	        strcmp(nearest, path) == 0);
 }
 
 /* Whether a field's interval is known in spite of other problems: the field is valid, and so are inputs and sweeps of it. */
@@ -299,8 +317,7 @@ bool study_check_known(const struct pound_study *study, const char *path, const 
 		return false;
 	for (int i = 0; i < n; i++) {
 		const bool here = all[i].path && strcmp(all[i].path, path) == 0;
-		snprintf(pointer, sizeof pointer, "/%s/%d/path", all[i].list, all[i].index);
-		if (!all[i].path || (problems_at(problems, pointer) && (here || may_mean(all[i].path, path))))
+		if (!all[i].path || (path_refused(&all[i], problems) && (here || may_mean(&all[i], path))))
 			return false;
 		snprintf(pointer, sizeof pointer, "/%s/%d", all[i].list, all[i].index);
 		if (problems_over(problems, pointer))
@@ -419,6 +436,19 @@ static bool applies_with_a_law(const struct pound_study *study, int output)
 	return applies;
 }
 
+/* Whether an output would apply at a story of some building, if the places were others. */
+static bool applies_at_a_place(const struct pound_study *study, int output)
+{
+	struct pound_study other = *study;
+	struct pound_storey_place place = {.storey = 1};
+	other.scene.places = &place;
+	other.scene.n_places = 1;
+	bool applies = false;
+	for (; place.building < study->scene.n_buildings; place.building++)
+		applies |= !study->scene.buildings[place.building].rigid_wall && study_check_applies(&other, output);
+	return applies;
+}
+
 /* Whether the members that decide which bodies and contacts a scene has are valid. */
 static bool bodies_known(const struct problems *problems)
 {
@@ -437,7 +467,8 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 	                                     NULL};
 	if (!bodies_known(problems))
 		return;
-	bool laws = all_known(study, needed, problems) && !problems_at(problems, "/places");
+	const bool places = !problems_at(problems, "/places");
+	bool laws = all_known(study, needed, problems);
 	for (int b = 0; b < study->scene.n_buildings; b++) {
 		char law[POINTER_SIZE];
 		snprintf(law, sizeof law, "/buildings/%d/law/type", b);
@@ -453,6 +484,7 @@ static void check_outputs(const struct pound_study *study, struct problems *prob
 			problems_add(problems, pointer, "cannot be computed with the solver \"%s\", only with \"event\"",
 			             pound_solver_name(study->solver.method));
 		if (!study_check_applies(study, study->outputs[o]) &&
+		    (places || !applies_at_a_place(study, study->outputs[o])) &&
 		    (laws || !applies_with_a_law(study, study->outputs[o])))
 			problems_add(problems, pointer, "does not apply to this scene: it needs %s",
 			             pound_output_needs(study->outputs[o], &study->scene));

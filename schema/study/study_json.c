@@ -424,7 +424,8 @@ static const char *chosen(const cJSON *object, const char *pattern)
 	return name || isnan(field->absent) ? NULL : field->choice((int)field->absent);
 }
 
-/* Looks up kind, excitation, solver and sweeps before the document is read, as they decide which members are used. */
+/* Looks up kind, excitation, solver and sweeps before the document is read, as they decide which members are used, and refuses
+ * buildings beside oscillators. */
 static void foresee(struct reader *r, const cJSON *document)
 {
 	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(document, "scene");
@@ -434,6 +435,8 @@ static void foresee(struct reader *r, const cJSON *document)
 	r->kind = chosen(document, "/kind");
 	r->excitation = chosen(excitation, "/scene/excitation/type");
 	r->solver = chosen(solver, "/solver/method");
+	if (cJSON_HasObjectItem(scene, "buildings") && cJSON_HasObjectItem(scene, "oscillators"))
+		problems_add(r->problems, "/scene/buildings", "is not used when oscillators are given");
 }
 
 static void outputs_default(struct pound_study *study)
@@ -495,7 +498,7 @@ static void signals_count(struct pound_excitation *e)
  *
  * Given    document  -         -       its text may be any bytes
  * Returns  value     -         -       the study; NULL: failed, see problems->status
- *          problems  -         -       problems in the order of the document, then problems between members
+ *          problems  -         -       problems in the order of the document
  * Memory   allocates one block, about 5 bytes per byte of text, and the samples of files; free with study_free
  *
  * Test     unit_study_cases, unit_study_json, unit_suite
@@ -539,13 +542,14 @@ struct pound_study *study_from_document(const struct study_document *source, str
 	reader_undesigned(&r, document);
 	signals_count(&study->scene.excitation);
 	reader_split(&r, document);
-	cJSON_Delete(document);
 	if (design && r.kind && study->kind != POUND_KIND_SENSITIVITY)
 		problems_add(problems, "/kind", "must be \"%s\": no other kind has a design",
 		             study_kind_name(POUND_KIND_SENSITIVITY));
 	reader_groups_find(study);
 	study_split_lay(study, problems);
 	study_check(study, problems);
+	problems_sort(problems, document);
+	cJSON_Delete(document);
 	if (problems->n) {
 		study_free(study);
 		return NULL;

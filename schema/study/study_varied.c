@@ -119,7 +119,7 @@ static const struct field *varying(const char *path)
 {
 	struct field_place place;
 	const struct field *field = path ? fields_scene(path, &place) : NULL;
-	return field && !field->fixed && field_types[field->type].number ? field : NULL;
+	return field && fields_vary(field, false) ? field : NULL;
 }
 
 static void read_input(struct reader *r, const cJSON *element, int j)

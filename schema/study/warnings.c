@@ -154,27 +154,44 @@ static double elevation(const struct pound_building *building, double level)
 	return sum;
 }
 
-/* Contacts join levels by number: at other heights they are probably wrong.  Without a list of contacts the first of each gap is named. */
+/* Whether a contact joins levels at different heights [m]; a rigid wall has every height. */
+static bool heights_differ(const struct pound_scene *scene, const struct pound_row_contact *contact,
+                           double heights[2])
+{
+	const double most = 0.02; // levels are written with few digits
+	const struct pound_building *left = &scene->buildings[contact->left_building];
+	for (int side = 0; side < 2; side++)
+		heights[side] = elevation(&left[side], contact->levels[side]);
+	return !left[1].rigid_wall && fabs(heights[0] - heights[1]) > most * fmax(heights[0], heights[1]);
+}
+
+/* Contacts join levels by number: at other heights they are probably wrong.  Without a list of contacts the first of each gap is
+ * named, and the others are counted. */
 static void look_at_levels(struct warnings *all, const struct pound_study *study)
 {
 	const struct pound_scene *scene = &study->scene;
-	const double most = 0.02; // levels are written with few digits
-	for (int k = 0, named = -1; k < pound_row_contacts(scene); k++) {
-		struct pound_row_contact contact;
+	for (int k = 0; k < pound_row_contacts(scene); k++) {
+		struct pound_row_contact contact, next;
+		double heights[2], ignored[2];
+		char pointer[48] = "/scene/contacts", rest[32] = "";
+		int more = 0;
 		pound_row_contact_of(scene, k, &contact);
-		const struct pound_building *left = &scene->buildings[contact.left_building], *right = left + 1;
-		const double low = elevation(left, contact.levels[0]), high = elevation(right, contact.levels[1]);
-		char pointer[48] = "/scene/contacts";
-		if (right->rigid_wall || named == contact.left_building ||
-		    !(fabs(low - high) > most * fmax(low, high)))
+		if (!heights_differ(scene, &contact, heights))
 			continue;
 		if (scene->n_contacts)
 			snprintf(pointer, sizeof pointer, "/scene/contacts/%d/levels", k);
-		else
-			named = contact.left_building;
-		warn(all, pointer, "join level %.4g of building %d at %.4g m and level %.4g of building %d at %.4g m",
-		     contact.levels[0], contact.left_building, low, contact.levels[1], contact.left_building + 1,
-		     high);
+		for (; !scene->n_contacts && k + 1 < pound_row_contacts(scene); k++) {
+			pound_row_contact_of(scene, k + 1, &next);
+			if (next.left_building != contact.left_building)
+				break;
+			more += heights_differ(scene, &next, ignored);
+		}
+		if (more)
+			snprintf(rest, sizeof rest, ", and %d more pair%s", more, more == 1 ? "" : "s");
+		warn(all, pointer,
+		     "join level %.4g of building %d at %.4g m and level %.4g of building %d at %.4g m%s",
+		     contact.levels[0], contact.left_building, heights[0], contact.levels[1],
+		     contact.left_building + 1, heights[1], rest);
 	}
 }
 

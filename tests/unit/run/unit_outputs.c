@@ -193,6 +193,43 @@ static void the_largest_drift_ratio_is_that_of_all_places(void **state)
 	reading_close(r);
 }
 
+#define TWO_HEIGHTS                                                                                          \
+	"\"scene\": {\"buildings\": [{\"storeys\": 2, \"mass_kg\": 1e5, \"frequency_hz\": 1}, {\"storeys\": 2, " \
+	"\"mass_kg\": 1e5, \"frequency_hz\": 1.7}], \"contact\": {\"gap_m\": 0.02}, \"excitation\": "            \
+	"{\"signals\": 2}}, "                                                                                    \
+	"\"outputs\": [\"peak_drift_ratio\", \"largest_drift_ratio\", \"peak_drift_m\"]"
+
+/* Half the height of a story doubles its drift ratio and no drift. */
+static void a_varied_height_divides_drifts(void **state)
+{
+	(void)state;
+	struct reading *r =
+	    results_of_study("{\"kind\": \"response\", \"sweep\": [{\"path\": \"/buildings/0/height_m\", "
+	                     "\"values\": [3, 1.5]}], " TWO_HEIGHTS "}");
+	static const struct {
+		const char *output;
+		double times;
+	} all[] = {{"peak_drift_ratio.building_0.storey_1", 2},
+	           {"peak_drift_ratio.building_0.storey_2", 2},
+	           {"largest_drift_ratio", 2},
+	           {"peak_drift_m.building_0.storey_1", 1}};
+	for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+		const double high = reading_number(r, "/cells/0/outputs/%s", all[k].output);
+		assert_true(high > 0);
+		check_near(reading_number(r, "/cells/1/outputs/%s", all[k].output), all[k].times * high, 0);
+	}
+	reading_close(r);
+	r = results_of_study("{\"kind\": \"sensitivity\", \"design\": {\"rows\": 8}, \"inputs\": [{\"path\": "
+	                     "\"/buildings/0/height_m\", "
+	                     "\"distribution\": {\"type\": \"uniform\", \"min\": 2, \"max\": 4}}, {\"path\": "
+	                     "\"/buildings/1/height_m/0\", "
+	                     "\"distribution\": {\"type\": \"uniform\", \"min\": 2, \"max\": 4}}], " TWO_HEIGHTS
+	                     "}");
+	assert_true(reading_number(r, "/cells/0/outputs/0/inputs/%d/ST", 0) > 0.1);
+	check_near(reading_number(r, "/cells/0/outputs/0/inputs/%d/ST", 1), 0, 0);
+	reading_close(r);
+}
+
 /* A value from a study of one signal; `part` follows the output's name. */
 static double number_at(const char *scene, const char *law, double gap, int seed, const char *output,
                         const char *part)
@@ -361,4 +398,5 @@ CHECK_MAIN(cmocka_unit_test(the_gap_needed_decides_which_signals_pound),
            cmocka_unit_test(outputs_of_pairs_are_means_of_the_signals),
            cmocka_unit_test(the_right_body_is_run_where_an_output_reads_it),
            cmocka_unit_test(outputs_of_rows_are_means_of_the_signals),
-           cmocka_unit_test(the_largest_drift_ratio_is_that_of_all_places))
+           cmocka_unit_test(the_largest_drift_ratio_is_that_of_all_places),
+           cmocka_unit_test(a_varied_height_divides_drifts))

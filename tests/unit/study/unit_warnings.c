@@ -85,6 +85,17 @@ static const struct {
      "/scene/contacts", "join level 2 of building 0 at 6 m and level 2 of building 1 at 7 m", false},
     {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
          ", \"frequency_hz\": 3, \"height_m\": 4}",
+         "\"gap_m\": 0", SHORT),
+     "/scene/contacts", "join level 1 of building 0 at 3 m and level 1 of building 1 at 4 m, and 1 more pair",
+     false},
+    {ROW("{\"storeys\": 3, \"mass_kg\": 1e5, \"frequency_hz\": 2}, {\"storeys\": 4, \"mass_kg\": 1e5, "
+         "\"frequency_hz\": 3, "
+         "\"height_m\": [4, 3, 3, 3]}, {\"rigid_wall\": true}",
+         "\"gap_m\": 0", SHORT),
+     "/scene/contacts",
+     "join level 1 of building 0 at 3 m and level 1 of building 1 at 4 m, and 2 more pairs", false},
+    {ROW("{" STOREYS ", \"frequency_hz\": 2, \"height_m\": 3}, {" STOREYS
+         ", \"frequency_hz\": 3, \"height_m\": 4}",
          "\"gap_m\": 0}, \"contacts\": [{\"levels\": [1, 0.75]}, {\"levels\": [2, 2]}], \"law\": {\"type\": "
          "\"linear\"",
          SHORT),
