@@ -69,6 +69,8 @@ static void print_modes(const struct reading *result, const char *at)
 	static const char *const columns[] = {"building", "mode", "T_s", "f_hz", "mass ratio", "damping", NULL};
 	static const char *const members[] = {
 	    "building", "mode", "period_s", "frequency_hz", "effective_mass_ratio", "damping_ratio"};
+	if (reading_count(result, "%s/modes", at) == 0) // a result of version 0.22 or earlier
+		return;
 	struct table *table = table_open(2, columns);
 	for (int k = 0; k < reading_count(result, "%s/modes", at); k++)
 		for (size_t m = 0; m < sizeof members / sizeof members[0]; m++)
@@ -110,7 +112,7 @@ static void print_storeys(const struct reading *result, const char *at)
 			}
 		}
 	putchar('\n');
-	table_prose(0, "storeys, each with the floor above it: peak values, means over the signals");
+	table_prose(0, "stories, each with the floor above it: peak values, means over the signals");
 	table_print(table, 2);
 	table_close(table);
 }

@@ -218,9 +218,8 @@ static void say_largest(struct plot *plot, const cJSON *output)
 	}
 	if (largest)
 		snprintf(plot->sentence, sizeof plot->sentence,
-		         "Largest total index of %.100s: input %.160s. The noise of signals accounts for %s of the "
-		         "variance.",
-		         plot_output_name(output, name), value_text(largest, &PARTS[1], text),
+		         "Largest total index of %.100s: input %.160s. The %s accounts for %s of the variance.",
+		         plot_output_name(output, name), value_text(largest, &PARTS[1], text), noise_name(plot),
 		         draw_number(plot_number(output, "noise_share"), number));
 	else
 		snprintf(plot->sentence, sizeof plot->sentence, "No index of %.100s has a value.",

@@ -67,7 +67,7 @@ void reader_undesigned(struct reader *r, const cJSON *document)
 {
 	const cJSON *design = cJSON_GetObjectItemCaseSensitive(document, "design"), *member;
 	if (!r->kind || strcmp(r->kind, "separation") != 0 ||
-	    cJSON_GetObjectItemCaseSensitive(document, "inputs"))
+	    cJSON_GetObjectItemCaseSensitive(document, "inputs") || !cJSON_IsObject(design))
 		return;
 	cJSON_ArrayForEach(member, design)
 	{

@@ -226,6 +226,6 @@ void study_cell_row(const struct pound_study *study, int cell, void *memory, str
 	study_cell(study, cell, scene);
 	pound_row_own(scene, memory);
 	for (int s = 0; s < study->n_sweeps; s++)
-		if (study->sweeps[s].field.part != POUND_PART_SCENE)
+		if (study->sweeps[s].field.part != POUND_PART_SCENE && study->sweeps[s].n_values)
 			pound_scene_assign(scene, study->sweeps[s].field, study_cell_sweep(study, cell, s));
 }

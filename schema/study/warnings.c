@@ -7,11 +7,15 @@
 #include <string.h>
 
 #include "engine/scene/building.h"
+#include "engine/scene/law.h"
 #include "schema/study/study_check.h"
 
 static const double G = 9.80665, PGA_MOST = 3, PGA_LEAST = 0.001; /* [m/s2], [g] */
 
 enum { MASSES_APART = 1000, STEPS_LEAST = 10 };
+
+/* probability of an input beyond the values that count, at each end */
+static const double PEAK_TAIL = 0.01, FREQUENCY_TAIL = 0.001;
 
 struct warnings {
 	struct writer *w;
@@ -80,6 +84,18 @@ static void look_at_masses(struct warnings *all, const struct pound_study *study
 	}
 }
 
+/* The interval of a field without the tails of an input, `tail` of its probability each: a distribution without bounds has no
+ * largest value. */
+static void bulk_of(const struct pound_study *study, const char *path, double tail, double *low, double *high)
+{
+	study_check_reach(study, path, low, high);
+	for (int j = 0; j < study->n_inputs; j++)
+		if (study->inputs[j].path && strcmp(study->inputs[j].path, path) == 0) {
+			*low = pound_distribution_quantile(&study->inputs[j].distribution, tail);
+			*high = pound_distribution_quantile(&study->inputs[j].distribution, 1 - tail);
+		}
+}
+
 /* The interval of the peak ground accelerations [m/s2]; false: not known. */
 static bool peaks_of(const struct pound_study *study, double *low, double *high)
 {
@@ -87,7 +103,7 @@ static bool peaks_of(const struct pound_study *study, double *low, double *high)
 	double least = 1, most = 1;
 	*low = INFINITY, *high = 0;
 	if (study_check_uses(study, "/scene/excitation/peak_m_s2")) {
-		study_check_reach(study, "/excitation/peak_m_s2", low, high);
+		bulk_of(study, "/excitation/peak_m_s2", PEAK_TAIL, low, high);
 		return true;
 	}
 	if (e->scale.to > POUND_SCALE_PGA)
@@ -102,8 +118,8 @@ static bool peaks_of(const struct pound_study *study, double *low, double *high)
 		*high = fmax(*high, peak * record->factor);
 	}
 	if (e->scale.to == POUND_SCALE_PGA)
-		study_check_reach(study, "/excitation/scale/intensity_m_s2", low, high);
-	study_check_reach(study, "/excitation/factor", &least, &most);
+		bulk_of(study, "/excitation/scale/intensity_m_s2", PEAK_TAIL, low, high);
+	bulk_of(study, "/excitation/factor", PEAK_TAIL, &least, &most);
 	*low *= least;
 	*high *= most;
 	return true;
@@ -235,7 +251,6 @@ static void look_at_rigid(struct warnings *all, const struct pound_study *study)
 
 static void look_at_steps(struct warnings *all, const struct pound_study *study)
 {
-	// quantile 0.999: a distribution without upper bound has no shortest period
 	double fastest = 0, low, high, step = study->scene.excitation.time_step;
 	for (int i = 0; i < bodies_of(study); i++) {
 		char path[40];
@@ -245,10 +260,7 @@ static void look_at_steps(struct warnings *all, const struct pound_study *study)
 		if (study->scene.n_buildings)
 			high = first_frequency(&study->scene.buildings[i]);
 		else
-			study_check_reach(study, path, &low, &high);
-		for (int j = 0; j < study->n_inputs && isinf(high); j++)
-			if (study->inputs[j].path && strcmp(study->inputs[j].path, path) == 0)
-				high = pound_distribution_quantile(&study->inputs[j].distribution, 0.999);
+			bulk_of(study, path, FREQUENCY_TAIL, &low, &high);
 		fastest = fmax(fastest, high);
 	}
 	if (study_check_uses(study, "/scene/excitation/time_step_s"))
@@ -339,20 +351,53 @@ static void look_at_yield_drifts(struct warnings *all, const struct pound_study 
 	}
 }
 
+/* Whether yield drifts of a building are found from a target demand. */
+static bool has_target(const struct pound_study *study, int b)
+{
+	const struct pound_building *building = &study->scene.buildings[b];
+	return !is_wall(study, b) && !pound_law_linear(pound_row_law(&study->scene, b)->type) &&
+	       !(building->has_law ? building->yield_drift.n > 0 : study->scene.law.yield_displacement > 0);
+}
+
+static void target_pointer(const struct pound_study *study, int b, char pointer[64])
+{
+	snprintf(pointer, 64,
+	         study->scene.buildings[b].has_law ? "/scene/buildings/%d/law/target_demand"
+	                                           : "/scene/law/target_demand",
+	         b);
+}
+
+/* Demands of stories are in the results of responses alone. */
+static void look_at_targets(struct warnings *all, const struct pound_study *study)
+{
+	const bool reports = study->kind == POUND_KIND_RESPONSE || study->kind == POUND_KIND_CONVERGENCE;
+	for (int b = 0; b < study->scene.n_buildings && !reports; b++) {
+		char pointer[64];
+		if (!has_target(study, b))
+			continue;
+		target_pointer(study, b, pointer);
+		warn(all, pointer,
+		     "yield drifts of building %d are set story by story, without a search: demands may be several "
+		     "times "
+		     "larger or smaller; a response study of this scene reports them",
+		     b);
+	}
+}
+
 /* Demands of stories that are not near their target: yield drifts are set story by story, without a search. */
 static void look_at_demands(struct warnings *all, const struct pound_study *study,
                             const struct pound_result *result)
 {
 	const double off = 1.1;
-	for (int b = 0; b < study->scene.n_buildings && study->kind == POUND_KIND_RESPONSE && !study->n_sweeps;
-	     b++) {
-		const struct pound_building *building = &study->scene.buildings[b];
-		const bool own = building->has_law;
+	bool varied = false; // cells may then differ in their targets and stories
+	for (int s = 0; s < study->n_sweeps; s++)
+		varied |= study->sweeps[s].field.part == POUND_PART_BUILDINGS ||
+		          strncmp(study->sweeps[s].path, "/law/", 5) == 0;
+	for (int b = 0; b < study->scene.n_buildings && study->kind == POUND_KIND_RESPONSE && !varied; b++) {
 		const struct pound_law *law = pound_row_law(&study->scene, b);
 		double least = INFINITY, most = 0;
 		char pointer[64];
-		if (is_wall(study, b) ||
-		    (own ? building->yield_drift.n > 0 : study->scene.law.yield_displacement > 0))
+		if (!has_target(study, b))
 			continue;
 		for (int cell = 0; cell < result->n_cells; cell++)
 			for (int s = 0; s < result->cells[cell].n_signals; s++) {
@@ -363,8 +408,7 @@ static void look_at_demands(struct warnings *all, const struct pound_study *stud
 					most = fmax(most, storeys[i].demand_free);
 				}
 			}
-		snprintf(pointer, sizeof pointer,
-		         own ? "/scene/buildings/%d/law/target_demand" : "/scene/law/target_demand", b);
+		target_pointer(study, b, pointer);
 		if (most > 0 && (most > off * law->target_demand || off * least < law->target_demand))
 			warn(
 			    all, pointer,
@@ -388,6 +432,7 @@ void warnings_write(struct writer *w, const struct pound_study *study, const str
 	look_at_levels(&all, study);
 	look_at_modes(&all, study);
 	look_at_rigid(&all, study);
+	look_at_targets(&all, study);
 	look_at_steps(&all, study);
 	look_at_peaks(&all, study);
 	if (result) {

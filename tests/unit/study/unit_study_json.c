@@ -1,5 +1,8 @@
 /* unit_study_json.c - members of a study document are read into the study; errors are tested by unit_study_cases.c. */
+#include <glob.h>
 #include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "schema/study/fields.h"
@@ -184,10 +187,76 @@ static void the_text_need_not_end_with_a_zero(void **state)
 	study_free(study);
 }
 
+/* The end of the JSON value that begins at `text`, which is valid. */
+static const char *value_end(const char *text)
+{
+	int depth = 0;
+	bool quoted = false;
+	for (;; text++) {
+		if (quoted) {
+			text += *text == '\\';
+			quoted = *text != '"';
+		} else if (depth == 0 && strchr(",]} \n", *text)) {
+			return text;
+		} else {
+			quoted = *text == '"';
+			depth += (*text == '{' || *text == '[') - (*text == '}' || *text == ']');
+		}
+		if (depth == 0 && !quoted && strchr("]}\"", *text))
+			return text + 1;
+	}
+}
+
+/* Reads a document with part of its text replaced: a study or problems, never both. */
+static void replaced_read(const char *document, const char *from, const char *to, const char *value)
+{
+	char *text = malloc(strlen(document) + 32);
+	const int n = sprintf(text, "%.*s%s%s", (int)(from - document), document, value, to);
+	struct problems problems;
+	struct pound_study *study = study_from_json(text, (size_t)n, &problems);
+	assert_true(!study == (problems.n > 0));
+	if (study)
+		study_free(study);
+	free(text);
+}
+
+/* Every value of every example, replaced by a value of each type. */
+static void a_value_of_any_type_in_any_place_is_read_or_refused(void **state)
+{
+	static const char *const values[] = {"[1]",    "[]",    "{}",   "{\"a\": 1}", "1",
+	                                     "-1e300", "\"x\"", "true", "null"};
+	glob_t examples;
+	int n = 0;
+	(void)state;
+	assert_int_equal(glob("schema/examples/*.json", 0, NULL, &examples), 0);
+	for (size_t e = 0; e < examples.gl_pathc; e++) {
+		static char document[1 << 16];
+		FILE *file = fopen(examples.gl_pathv[e], "r");
+		assert_non_null(file);
+		document[fread(document, 1, sizeof document - 1, file)] = '\0';
+		fclose(file);
+		for (const char *c = document; *c; c++) {
+			if (*c == '"') { // a name, or a string in a list: neither begins a value below
+				c = value_end(c);
+				c += strspn(c, " \n");
+			}
+			if (*c != ':' && *c != '[')
+				continue;
+			const char *from = c + 1 + strspn(c + 1, " \n");
+			for (size_t k = 0; k < COUNT(values) && *from != ']'; k++, n++)
+				replaced_read(document, from, value_end(from), values[k]);
+		}
+	}
+	check_report("%d documents", n);
+	assert_true(n > 10000);
+	globfree(&examples);
+}
+
 CHECK_MAIN(cmocka_unit_test(absent_settings_are_some_and_empty_ones_none),
            cmocka_unit_test(what_a_document_says_is_in_the_study),
            cmocka_unit_test(absent_members_have_the_defaults_of_the_contract),
            cmocka_unit_test(what_an_excitation_does_not_use_is_zero),
            cmocka_unit_test(a_rigid_wall_has_no_frequency), cmocka_unit_test(no_contact_is_null),
            cmocka_unit_test(broken_json_is_reported_by_line_and_column),
-           cmocka_unit_test(the_text_need_not_end_with_a_zero))
+           cmocka_unit_test(the_text_need_not_end_with_a_zero),
+           cmocka_unit_test(a_value_of_any_type_in_any_place_is_read_or_refused))

@@ -118,6 +118,33 @@ static const struct {
          "{" STOREYS ", \"frequency_hz\": 3}",
          "\"gap_m\": 0", SHORT),
      "/scene/buildings/0/law/target_demand", "is 2, but demands of building 0 without pounding are ", true},
+    // also with a sweep that changes no building
+    {"{\"kind\": \"response\", \"scene\": {\"buildings\": [{" STOREYS
+     ", \"frequency_hz\": 2, \"law\": {\"type\": \"elastoplastic\", \"target_demand\": 2}}, {" STOREYS
+     ", \"frequency_hz\": 3}], \"contact\": {}, \"excitation\": {" SHORT
+     "}}, \"sweep\": [{\"path\": \"/contact/gap_m\", \"values\": [0, 0.001]}]}",
+     "/scene/buildings/0/law/target_demand", "is 2, but demands of building 0 without pounding are ", true},
+    {"{\"kind\": \"sensitivity\", \"scene\": {\"buildings\": [{" STOREYS
+     ", \"frequency_hz\": 2, \"law\": {\"type\": \"elastoplastic\"}}, {" STOREYS
+     ", \"frequency_hz\": 3}], \"contact\": {}, \"excitation\": {" SHORT
+     "}}, \"inputs\": [{\"path\": \"/excitation/peak_m_s2\", \"distribution\": {\"type\": "
+     "\"uniform\", \"min\": 1, \"max\": 2}}, {\"path\": \"/contact/gap_m\", "
+     "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 0.001}}], \"design\": {\"rows\": 4}}",
+     "/scene/buildings/0/law/target_demand",
+     "yield drifts of building 0 are set story by story, without a search: demands may be several times "
+     "larger or smaller; a response study of this scene reports them",
+     false},
+    // of a lognormal peak only what few samples exceed counts
+    {"{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT
+     "}}, \"inputs\": [{\"path\": \"/excitation/peak_m_s2\", \"distribution\": {\"type\": "
+     "\"lognormal_median\", \"median\": 3, \"dispersion\": 0.4}}, {\"path\": \"/contact/gap_m\", "
+     "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 0.01}}], \"design\": {\"rows\": 4}}",
+     NULL, NULL, false},
+    {"{\"kind\": \"sensitivity\", \"scene\": {\"oscillators\": [" BODIES "], \"excitation\": {" SHORT
+     "}}, \"inputs\": [{\"path\": \"/excitation/peak_m_s2\", \"distribution\": {\"type\": "
+     "\"lognormal_median\", \"median\": 30, \"dispersion\": 0.4}}, {\"path\": \"/contact/gap_m\", "
+     "\"distribution\": {\"type\": \"uniform\", \"min\": 0, \"max\": 0.01}}], \"design\": {\"rows\": 4}}",
+     "/scene/excitation/peak_m_s2", "has a peak of 76.08 m/s2, 7.758 g: is its unit m/s2?", false},
 };
 
 static struct reading *estimate_of(const struct pound_study *study)
