@@ -3,6 +3,7 @@
 
 #include "client/command.h"
 #include "client/table.h"
+#include "schema/result/output_label.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -52,10 +53,13 @@ void cell_failed(const struct reading *result, const char *at)
 		putchar('\n');
 }
 
-static char *measures_add(char *text, const struct reading *result, const char *at,
-                          const struct measure measures[])
+char *cell_output(const struct reading *result, const char *at, const struct measure measures[])
 {
-	char more[80];
+	char label[OUTPUT_LABEL], more[80];
+	const double mean = reading_number(result, "%s/mean", at);
+	char *text = command_text("%s", output_label(result, at, label));
+	if (isfinite(mean))
+		text = command_append(text, ": mean %.4g", mean);
 	for (; measures->member; measures++) {
 		const double value = reading_number(result, "%s/%s", at, measures->member);
 		if (!isfinite(value))
@@ -64,14 +68,4 @@ static char *measures_add(char *text, const struct reading *result, const char *
 		text = command_append(text, "%s", more);
 	}
 	return text;
-}
-
-char *cell_output(const struct reading *result, const char *at, const struct measure measures[])
-{
-	static const struct measure places[] = {
-	    {"frequency_hz", " at %.4g Hz", 1}, {"building", ", building %.0f", 1}, {"storey", ", story %.0f", 1},
-	    {"contact", ", contact %.0f", 1},   {"mean", ": mean %.4g", 1},         {NULL, NULL, 0}};
-	const char *name = reading_text(result, "%s/name", at);
-	char *text = command_text("%s", name ? name : "?");
-	return measures_add(measures_add(text, result, at, places), result, at, measures);
 }

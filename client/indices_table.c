@@ -519,13 +519,18 @@ static bool section_anywhere(const struct reading *result, const char *name)
 	return any;
 }
 
+bool indices_have_table(const struct reading *result, const char *table)
+{
+	return strcmp(table, "stopping") == 0 ? reading_has(result, "/stopping")
+	                                      : section_anywhere(result, table);
+}
+
 bool indices_print_table(const struct reading *result, const char *table)
 {
-	const bool stopping = strcmp(table, "stopping") == 0 && reading_has(result, "/stopping");
-	if (!stopping && !section_anywhere(result, table))
+	if (!indices_have_table(result, table))
 		return false;
 	print_partial(result);
-	if (stopping)
+	if (strcmp(table, "stopping") == 0)
 		print_stopping(result);
 	else
 		print_outputs(result, table);

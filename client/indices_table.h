@@ -8,6 +8,8 @@
 void indices_print(const struct reading *result);
 void given_data_print(const struct reading *result);
 
+/* Whether the result has a table of RESULT_TABLES in any output. */
+bool indices_have_table(const struct reading *result, const char *table);
 /* One of RESULT_TABLES, of every output that has it; false: none has. */
 bool indices_print_table(const struct reading *result, const char *table);
 

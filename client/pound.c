@@ -3,6 +3,7 @@
 #include "client/command.h"
 #include "schema/message/coordinator.h"
 #include "schema/result/result_json.h"
+#include "schema/study/near_name.h"
 
 #include <argp.h>
 #include <assert.h>
@@ -19,7 +20,7 @@ enum {
 	THREADS_MAX = 1024,
 	LIMIT_MAX = 100,
 	CHANNEL_MAX = 1000,
-	FORMATS_MAX = 4,
+	FORMATS_MAX = 4, /* with a NULL at the end */
 	JOBS = 8,
 	JOBS_MAX = 1000,
 	REPLICATES_MAX = 100000,
@@ -39,6 +40,12 @@ struct command {
 
 #define TABLE(name) " " #name
 #define TABLES      RESULT_TABLES(TABLE)
+
+static const char *const TABLE_NAMES[] = {
+#define X(name) #name,
+    RESULT_TABLES(X)
+#undef X
+        NULL};
 
 /* Keys of the options for figures: not printable, so that these options have no short form. */
 enum {
@@ -203,13 +210,25 @@ static void take_argument(struct argp_state *state, struct parsing *parsing, con
 	*(parsing->options.argument ? &parsing->options.second : &parsing->options.argument) = argument;
 }
 
+/* Ends the command: a name is not among the choices; `more` is where to see them. */
+static void refuse_name(struct argp_state *state, const char *what, const char *name,
+                        const char *const choices[], const char *more)
+{
+	struct near_name_search search = near_name_begin(name);
+	for (; *choices; choices++)
+		near_name_try(&search, *choices);
+	const char *meant = near_name_found(&search);
+	argp_error(state, "no %s '%s' here%s%s%s %s", what, name, meant ? ", did you mean '" : ";",
+	           meant ? meant : "", meant ? "'?" : "", more);
+}
+
 static void check_table(struct argp_state *state, const struct options *options)
 {
 	char *padded = command_text(" %s ", options->table ? options->table : "inputs");
 	bool all = options->table && strcmp(options->table, "all") == 0 && strcmp(options->format, "table") == 0;
 	if (!all && (strchr(padded + 1, ' ') != strrchr(padded, ' ') || !strstr(TABLES " ", padded)))
-		argp_error(state, "no table '%s' here; there are:%s, and all with --format table", options->table,
-		           TABLES);
+		refuse_name(state, "table", options->table, TABLE_NAMES,
+		            "there are:" TABLES ", and all with --format table");
 	if (options->table && strcmp(options->format, "json") == 0)
 		argp_error(state, "--table needs --format table or --format csv");
 	free(padded);
@@ -287,7 +306,7 @@ static error_t take_option(int key, char *value, struct argp_state *state)
 				options->format = value;
 				return 0;
 			}
-		argp_error(state, "no format '%s' here; see pound %s --help", value, parsing->command->name);
+		refuse_name(state, "format", value, parsing->command->formats, "see --help");
 		return 0;
 	case 'U':
 		options->unit = value;

@@ -146,9 +146,9 @@ static void print_contacts(const struct reading *result, const char *at)
 		}
 	}
 	putchar('\n');
-	table_prose(0,
-	            "contacts, means over the signals (left: index of the left building; levels: on the left and "
-	            "on the right building)");
+	table_prose(
+	    0, "contacts, means over the signals, first_m_s over the signals with contact (left: index of the "
+	       "left building; levels: on the left and on the right building)");
 	table_print(table, 2);
 	table_close(table);
 }

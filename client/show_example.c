@@ -3,6 +3,7 @@
 #include "client/document.h"
 #include "schema/examples/examples.h"
 #include "schema/record/record.h"
+#include "schema/study/near_name.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -86,7 +87,12 @@ enum outcome example_print(const struct options *options)
 		fputs(text, stdout);
 		return OUTCOME_OK;
 	}
-	command_complain("no example '%s'; there are:", name);
+	struct near_name_search search = near_name_begin(name);
+	for (int i = 0; example_name(i); i++)
+		near_name_try(&search, example_name(i));
+	const char *meant = near_name_found(&search);
+	command_complain("no example '%s'%s%s%s there are:", name, meant ? ", did you mean '" : ";",
+	                 meant ? meant : "", meant ? "'?" : "");
 	for (int i = 0; example_name(i); i++)
 		command_complain("  %-24s %s", example_name(i), example_title(i));
 	return OUTCOME_USAGE;

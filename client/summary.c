@@ -10,6 +10,8 @@
 #include "client/cell.h"
 
 #include "client/command.h"
+#include "client/groups_sentence.h"
+#include "client/indices_table.h"
 #include "client/table.h"
 #include "schema/result/result_json.h"
 #include "schema/result/widest_interval.h"
@@ -23,7 +25,6 @@ enum {
 	SCREEN = 24, /* lines */
 	INPUTS_MOST = 64,
 	PARAGRAPHS = 12,
-	GROUPED_MOST = 3, /* outputs whose groups are shown */
 	PATH_SIZE = 128,
 	COLUMNS = 4,      /* inputs that fit side by side with output names of any length */
 	INPUT_WIDTH = 14, /* longest input name beside both indices and a bar */
@@ -37,6 +38,13 @@ enum { S1, ST, INDICES };
 
 static const char *const INDEX_NAMES[INDICES] = {"S1", "ST"};
 
+/* What distinguishes outputs with the same name. */
+static const struct {
+	const char *member, *plural;
+} PLACE_NAMES[] = {{"frequency_hz", "frequencies"}, {"storey", "stories"}};
+
+enum { PLACES = sizeof PLACE_NAMES / sizeof PLACE_NAMES[0] };
+
 /* Range of an index of one input over all cells, frequencies and stories of one output name. */
 struct span {
 	double low, high, half; /* half-width of the last interval */
@@ -44,7 +52,8 @@ struct span {
 
 struct row {
 	const char *output;
-	int n; /* outputs with this name in a cell: frequencies or stories */
+	int n;     /* outputs with this name in a cell: frequencies or stories */
+	int place; /* row of PLACE_NAMES: what distinguishes them */
 	struct span spans[INDICES][INPUTS_MOST];
 };
 
@@ -147,6 +156,9 @@ static void spans_find(struct summary *summary)
 			const char *name = reading_text(result, "%s/name", output);
 			struct row *row = row_of(summary, name ? name : "?");
 			row->n += c == 0;
+			for (int k = 0; k < PLACES; k++)
+				if (isfinite(reading_number(result, "%s/%s", output, PLACE_NAMES[k].member)))
+					row->place = k;
 			summary->n_outputs += c == 0;
 			for (int j = 0; j < reading_count(result, "%s/inputs", output) && j < INPUTS_MOST; j++)
 				input_add(summary, row, output, j);
@@ -403,10 +415,26 @@ static void print_block(const struct summary *summary, const struct layout *layo
 	}
 }
 
+/* What the ranges are over: "the 2 cells of the sweep and stories"; "" without ranges.  The caller frees it. */
+static char *over_of(const struct summary *summary)
+{
+	bool is[PLACES] = {false};
+	char *text = command_text("%s", "");
+	if (summary->n_cells > 1)
+		text = command_append(text, "the %d cells of the sweep", summary->n_cells);
+	for (int k = 0; k < summary->n_rows; k++)
+		is[summary->rows[k].place] |= summary->rows[k].n > 1;
+	for (int place = 0; place < PLACES; place++)
+		if (is[place])
+			text = command_append(text, "%s%s", *text ? " and " : "", PLACE_NAMES[place].plural);
+	return text;
+}
+
 /* Sentence that explains the numbers and their ranges; the caller frees it. */
 static char *intro_of(const struct summary *summary, bool both)
 {
 	bool places = false, values = false;
+	char *over = over_of(summary);
 	for (int k = 0; k < summary->n_rows; k++) {
 		places |= summary->rows[k].n > 1;
 		values |= !is_range(summary, &summary->rows[k]);
@@ -414,11 +442,10 @@ static char *intro_of(const struct summary *summary, bool both)
 	char *text = command_text("Fraction of an output's variance due to an input %s%s%s",
 	                          both || !summary->any[ST] ? "alone (S1)" : "", both ? " and " : "",
 	                          summary->any[ST] ? "with its interactions (ST)" : "");
-	if (summary->n_cells > 1 || places)
-		text = command_append(text, ", lowest to highest over");
-	if (summary->n_cells > 1)
-		text = command_append(text, " the %d cells of the sweep%s", summary->n_cells, places ? " and" : "");
-	return command_append(text, "%s%s.", places ? " frequencies or stories (number in parentheses)" : "",
+	if (*over)
+		text = command_append(text, ", lowest to highest over %s", over);
+	free(over);
+	return command_append(text, "%s%s.", places ? " (number in parentheses)" : "",
 	                      values ? "; +-: 95 % interval" : "");
 }
 
@@ -526,7 +553,7 @@ static char *tables_of(const struct reading *result)
 	};
 	char *line = command_text("More tables (--table NAME): all");
 	for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
-		if (reading_has(result, "/cells/0/outputs/0/%s", names[k]) || reading_has(result, "/%s", names[k]))
+		if (indices_have_table(result, names[k]))
 			line = command_append(line, ", %s", names[k]);
 	return line;
 }
@@ -584,43 +611,20 @@ static char *notes_of(const struct reading *result)
 		}
 	char *line = first ? command_text("Note on %s: %s.", names, first) : NULL;
 	free(first), free(names);
-	return others ? command_append(line, " %d more notes: --table inputs", others) : line;
-}
-
-/* The indices of the groups of all outputs in one sentence, of a study without a sweep; the caller frees it.  NULL: none. */
-static char *groups_of(const struct reading *result)
-{
-	const int outputs = reading_count(result, "/cells/0/outputs");
-	char *line = NULL;
-	for (int o = 0; o < outputs && outputs <= GROUPED_MOST && reading_count(result, "/cells") == 1; o++) {
-		const int groups = reading_count(result, "/cells/0/outputs/%d/groups", o);
-		if (groups > 0 && !line) {
-			line = command_text("S1/ST of the groups");
-			for (int g = 0; g < groups; g++)
-				line = command_append(line, "%s %s", g ? "," : "",
-				                      reading_text(result, "/cells/0/outputs/%d/groups/%d/name", o, g));
-		}
-		for (int g = 0; g < groups; g++) {
-			char group[PATH_SIZE];
-			snprintf(group, sizeof group, "/cells/0/outputs/%d/groups/%d", o, g);
-			line = g ? command_append(line, ",")
-			         : command_append(line, "; %s:", reading_text(result, "/cells/0/outputs/%d/name", o));
-			for (int i = 0; i < INDICES; i++) {
-				const double value = reading_number(result, "%s/%s", group, INDEX_NAMES[i]);
-				line = command_append(line, isfinite(value) ? "%s%.2f" : "%s-", i ? "/" : " ", value);
-			}
-		}
-	}
-	return line;
+	return others ? command_append(line, " %d more note%s: --table inputs", others, others == 1 ? "" : "s")
+	              : line;
 }
 
 /* Errors that more rows do not reduce, the widest interval, and where to find the other tables. */
-static void below_find(const struct reading *result, struct paragraphs *below)
+static void below_find(const struct summary *summary, struct paragraphs *below)
 {
+	const struct reading *result = summary->result;
 	struct widest_interval widest;
+	char *over = over_of(summary);
 	const char *note = reading_text(result, "/accuracy/note"),
 	           *dominant = reading_text(result, "/accuracy/dominant");
-	char *const sentences[] = {groups_of(result), notes_of(result)};
+	char *const sentences[] = {groups_sentence(result, over), notes_of(result)};
+	free(over);
 	for (int k = 0; k < 2; k++)
 		if (sentences[k])
 			paragraph_add(below, sentences[k]);
@@ -649,7 +653,7 @@ void summary_print(const struct reading *result)
 	spans_find(&summary);
 	order_find(&summary);
 	above_find(result, &above);
-	below_find(result, &below);
+	below_find(&summary, &below);
 	const int lines = SCREEN - 1 - paragraphs_lines(&above) - paragraphs_lines(&below);
 	paragraphs_print(&above);
 	putchar('\n');

@@ -7,18 +7,16 @@
 
 enum { OUTPUTS_MOST = 3, WIDTH_OUTPUTS_MOST = 6, PANEL_NARROWEST = 240, METHODS_MOST = 8, INPUTS_MOST = 16 };
 
-static const cJSON *first_output(const cJSON *result)
-{
-	const cJSON *cells = plot_member(result, "cells");
-	const cJSON *outputs = plot_member(plot_first(cells), "outputs");
-	return plot_first(outputs);
-}
-
 /* ---- given ---- */
+
+static bool has_curves(const cJSON *output)
+{
+	return cJSON_GetArraySize(plot_member(output, "conditional_means")) > 0;
+}
 
 bool plot_has_given(const cJSON *result)
 {
-	return cJSON_GetArraySize(plot_member(first_output(result), "conditional_means")) > 0;
+	return plot_any_output(result, has_curves);
 }
 
 static double *places(struct plot *plot, const struct axis *axis, const cJSON *list, int *n)
@@ -68,7 +66,7 @@ void plot_given(struct plot *plot)
 	    {.name = "mean over all samples", .pen = {.ink = INK_MUTED, .width = 1, .dash = "4 3"}}};
 	char sweep[PLOT_TEXT], label[PLOT_TEXT], number[2][32], title[PLOT_TEXT + 40];
 	const cJSON *cell = plot_cell(plot), *outputs[OUTPUTS_MOST], *curve;
-	int n = cell ? plot_outputs(plot, cell, OUTPUTS_MOST, outputs) : 0;
+	int n = cell ? plot_outputs(plot, cell, has_curves, OUTPUTS_MOST, outputs) : 0;
 	if (n == 0)
 		return;
 	snprintf(title, sizeof title, "Mean output given one input");
@@ -104,9 +102,14 @@ void plot_given(struct plot *plot)
 
 /* ---- widths ---- */
 
+static bool has_widths(const cJSON *output)
+{
+	return cJSON_GetArraySize(plot_member(plot_member(output, "accuracy"), "rows")) > 1;
+}
+
 bool plot_has_widths(const cJSON *result)
 {
-	return cJSON_GetArraySize(plot_member(plot_member(first_output(result), "accuracy"), "rows")) > 1;
+	return plot_any_output(result, has_widths);
 }
 
 /* The cost of each number of rows: CPU seconds if the result has them for all, else the numbers of rows. */
@@ -201,7 +204,7 @@ void plot_widths(struct plot *plot)
 	const double goal = plot_number(plot_member(plot->result, "stopping"), "half_width");
 	struct key keys[INPUTS_MOST + 4];
 	const cJSON *cell = plot_cell(plot), *outputs[WIDTH_OUTPUTS_MOST], *input;
-	int n = cell ? plot_outputs(plot, cell, WIDTH_OUTPUTS_MOST, outputs) : 0, n_keys = 0, j = 0;
+	int n = cell ? plot_outputs(plot, cell, has_widths, WIDTH_OUTPUTS_MOST, outputs) : 0, n_keys = 0, j = 0;
 	if (n == 0)
 		return;
 	plot_head(plot, "Half-widths of the 95 % intervals over CPU time or rows",

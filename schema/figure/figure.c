@@ -8,6 +8,7 @@
 
 #include "schema/figure/plot.h"
 #include "schema/json/json.h"
+#include "schema/study/near_name.h"
 
 enum { WIDTH = 1120 };
 
@@ -150,6 +151,16 @@ static void absent(const struct figure_row *row, const cJSON *result, bool sampl
 		}
 }
 
+static void unknown(const char *name, struct figure *figure)
+{
+	struct near_name_search search = near_name_begin(name);
+	for (const struct figure_row *row = figure_rows; row->name; row++)
+		near_name_try(&search, row->name);
+	const char *meant = near_name_found(&search);
+	snprintf(figure->detail, sizeof figure->detail, "no figure is called \"%.60s\"%s%s%s", name,
+	         meant ? ", did you mean \"" : "", meant ? meant : "", meant ? "\"?" : "");
+}
+
 /* Draws a figure of a parsed result with valid arguments. */
 enum figure_status figure_of(const struct figure_row *row, const cJSON *result,
                              const struct figure_source *source, const struct figure_choice *choice,
@@ -181,7 +192,7 @@ enum figure_status figure_draw(const char *name, const struct figure_source *sou
 	const struct figure_row *row = figure_row(name);
 	*figure = (struct figure){0};
 	if (!row) {
-		snprintf(figure->detail, sizeof figure->detail, "no figure is called \"%.60s\"", name);
+		unknown(name, figure);
 		return FIGURE_UNKNOWN;
 	}
 	if (!choice_taken(row, choice, figure->detail, sizeof figure->detail))

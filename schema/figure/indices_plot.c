@@ -27,9 +27,14 @@ static bool drawn(const struct plot *plot, const struct part *part)
 	return !plot->choice->index || strcmp(plot->choice->index, part->name) == 0;
 }
 
+static bool is_output(const cJSON *output)
+{
+	return cJSON_IsObject(output);
+}
+
 bool plot_has_indices(const cJSON *result)
 {
-	return cJSON_GetArraySize(plot_member(plot_first(plot_member(result, "cells")), "outputs")) > 0;
+	return plot_any_output(result, is_output);
 }
 
 /* "f_2: ST 0.51 [0.42, 0.6]" */
@@ -230,7 +235,8 @@ void plot_indices(struct plot *plot)
 {
 	char sweep[PLOT_TEXT], text[PLOT_TEXT];
 	const cJSON *cell = plot_cell(plot), *outputs[ORDINATES_MOST + OUTPUTS_MOST];
-	int n = cell ? plot_outputs(plot, cell, ORDINATES_MOST + OUTPUTS_MOST, outputs) : 0, n_plain = 0;
+	int n = cell ? plot_outputs(plot, cell, is_output, ORDINATES_MOST + OUTPUTS_MOST, outputs) : 0,
+	    n_plain = 0;
 	if (n == 0)
 		return;
 	while (n_plain < n && !isfinite(plot_number(outputs[n_plain], "frequency_hz")))
@@ -272,11 +278,14 @@ void plot_indices(struct plot *plot)
 
 /* ---- pairs ---- */
 
+static bool has_interactions(const cJSON *output)
+{
+	return cJSON_GetArraySize(plot_member(output, "second_order")) > 0;
+}
+
 bool plot_has_pairs(const cJSON *result)
 {
-	return cJSON_GetArraySize(
-	           plot_member(plot_first(plot_member(plot_first(plot_member(result, "cells")), "outputs")),
-	                       "second_order")) > 0;
+	return plot_any_output(result, has_interactions);
 }
 
 static int place_of(const cJSON *inputs, const char *name)
@@ -370,7 +379,7 @@ void plot_pairs(struct plot *plot)
 {
 	char sweep[PLOT_TEXT];
 	const cJSON *cell = plot_cell(plot), *outputs[6], *input;
-	int n = cell ? plot_outputs(plot, cell, 6, outputs) : 0;
+	int n = cell ? plot_outputs(plot, cell, has_interactions, 6, outputs) : 0;
 	if (n == 0)
 		return;
 	plot_head(plot, "Second-order indices S2 of every two inputs, with half widths of their 95 % intervals",

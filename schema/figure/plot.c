@@ -100,21 +100,36 @@ const cJSON *plot_cell(struct plot *plot)
 	return cJSON_GetArrayItem(cells, cell);
 }
 
-int plot_outputs(struct plot *plot, const cJSON *cell, int most, const cJSON **outputs)
+bool plot_any_output(const cJSON *result, plot_drawable *has)
+{
+	const cJSON *cell, *output;
+	cJSON_ArrayForEach(cell, plot_member(result, "cells"))
+	{
+		cJSON_ArrayForEach(output, plot_member(cell, "outputs")) if (has(output)) return true;
+	}
+	return false;
+}
+
+int plot_outputs(struct plot *plot, const cJSON *cell, plot_drawable *has, int most, const cJSON **outputs)
 {
 	const char *chosen = plot->choice->output;
 	const cJSON *list = plot_member(cell, "outputs"), *output;
-	int n = 0;
+	int n = 0, named = 0;
 	for (int pass = 0; pass < 2; pass++)
 		cJSON_ArrayForEach(output, list)
 		{
 			bool ordinate = isfinite(plot_number(output, "frequency_hz"));
-			if (n < most && ordinate == (pass == 1) &&
-			    (!chosen || strcmp(chosen, plot_text(output, "name")) == 0))
+			if (ordinate != (pass == 1) || (chosen && strcmp(chosen, plot_text(output, "name")) != 0))
+				continue;
+			named++;
+			if (n < most && has(output))
 				outputs[n++] = output;
 		}
-	if (n == 0 && chosen)
+	if (chosen && named == 0)
 		snprintf(plot->fault, sizeof plot->fault, "this result has no output \"%.60s\"", chosen);
+	else if (n == 0)
+		snprintf(plot->fault, sizeof plot->fault, "%s%.60s%s has no numbers for this figure in this cell",
+		         chosen ? "output \"" : "no output", chosen ? chosen : "", chosen ? "\"" : "");
 	return n;
 }
 

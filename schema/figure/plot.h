@@ -41,8 +41,12 @@ double *plot_numbers(struct plot *plot, const cJSON *list, int *n);             
 double *plot_column(struct plot *plot, const cJSON *list, const char *name, int *n); /* of the elements */
 const cJSON *plot_cell(struct plot *plot); /* the chosen cell; NULL: invalid, see fault */
 
+/* Whether an output has what a figure draws: a constant output has no interactions and no curves. */
+typedef bool plot_drawable(const cJSON *output);
+bool plot_any_output(const cJSON *result, plot_drawable *has); /* in any cell */
+
 /* The outputs of a cell to draw, at most `most`: the chosen one, or all, outputs without a frequency first.  0: see fault. */
-int plot_outputs(struct plot *plot, const cJSON *cell, int most, const cJSON **outputs);
+int plot_outputs(struct plot *plot, const cJSON *cell, plot_drawable *has, int most, const cJSON **outputs);
 
 /* ---- samples in time ---- */
 

@@ -318,11 +318,14 @@ static void put_figures(struct report *report)
 static bool column_shown(const char *name)
 {
 	static const char *const hidden[] = {"_raw", "_pick_freeze", "_random_forest", "accuracy.", "partial."};
+	static const char *const of_output[] = {"name", "frequency_hz", "contact", "building", "storey", "mean"};
 	for (size_t k = 0; k < sizeof hidden / sizeof hidden[0]; k++)
 		if (strstr(name, hidden[k]))
 			return false;
-	return strncmp(name, "output.", 7) != 0 || strcmp(name, "output.name") == 0 ||
-	       strcmp(name, "output.frequency_hz") == 0;
+	bool shown = strncmp(name, "output.", 7) != 0;
+	for (size_t k = 0; k < sizeof of_output / sizeof of_output[0]; k++)
+		shown |= !shown && strcmp(name + 7, of_output[k]) == 0;
+	return shown;
 }
 
 static void put_cell(struct report *report, const char *text, bool head)

@@ -160,12 +160,15 @@ static void put_cell(struct lines *lines, const struct place *at)
 	put_scalars(lines, member(at->cell, "sweep"), "");
 }
 
+/* Name and place of an output. */
 static void put_output(struct lines *lines, const struct place *at)
 {
+	static const char *const members[] = {"frequency_hz", "contact", "building", "storey"};
 	put_cell(lines, at);
 	put(lines, "output.", "name", member(at->output, "name"));
-	if (member(at->output, "frequency_hz"))
-		put(lines, "output.", "frequency_hz", member(at->output, "frequency_hz"));
+	for (size_t k = 0; k < sizeof members / sizeof members[0]; k++)
+		if (member(at->output, members[k]))
+			put(lines, "output.", members[k], member(at->output, members[k]));
 }
 
 static void put_input(struct lines *lines, const struct place *at)

@@ -3,6 +3,8 @@
  * If a few rare rows make much of a variance, fewer rows may contain none of them: the interval is then narrower and wrong. */
 #include "schema/result/widest_interval.h"
 
+#include "schema/result/output_label.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -11,15 +13,17 @@ enum { PATH_SIZE = 128 };
 
 /* The widest interval of one output, by number of rows. */
 struct widths {
-	const char *output, *input, *index; /* from all rows */
-	double last, least;                 /* half-widths from all rows, and the narrowest from fewer rows */
+	char output[OUTPUT_LABEL]; /* with its place */
+	const char *input, *index; /* from all rows */
+	double last, least;        /* half-widths from all rows, and the narrowest from fewer rows */
 	double rows, rows_least, rows_to_halve;
 };
 
 static struct widths widths_of(const struct reading *result, const char *output)
 {
 	static const char *const names[] = {"S1", "ST"};
-	struct widths widths = {.output = reading_text(result, "%s/name", output), .last = NAN, .least = NAN};
+	struct widths widths = {.last = NAN, .least = NAN};
+	output_label(result, output, widths.output);
 	const int levels = reading_count(result, "%s/accuracy/rows", output);
 	widths.rows_to_halve = reading_number(result, "%s/accuracy/rows_to_halve", output);
 	for (int level = 0; level < levels; level++) {
@@ -73,8 +77,7 @@ void widest_interval_find(const struct reading *result, struct widest_interval *
 	if (isfinite(widest.rows_to_halve))
 		snprintf(more, sizeof more, "; %.0f rows would halve its width", widest.rows_to_halve);
 	snprintf(text->size, WIDEST_TEXT, "The widest 95 %% interval is +-%.2g, of %s of input %s, output %s%s.",
-	         widest.last, widest.index, widest.input ? widest.input : "?",
-	         widest.output ? widest.output : "?", more);
+	         widest.last, widest.index, widest.input ? widest.input : "?", widest.output, more);
 	if (widest.last > 1.1 * widest.least)
 		snprintf(text->narrower, WIDEST_TEXT,
 		         "With %.0f rows it was +-%.2g, narrower but not better: a few rare rows hold much of the "

@@ -248,20 +248,14 @@ static const char *const synonyms[][2] = {
 /* The choice that was probably meant by a name; NULL: not known. */
 static const char *nearest_choice(const char *(*choice)(int row), const char *name)
 {
-	const char *nearest = NULL;
-	int best = 1000;
+	struct near_name_search search = near_name_begin(name);
 	for (size_t k = 0; k < sizeof synonyms / sizeof synonyms[0]; k++)
 		for (int row = 0; choice(row); row++)
 			if (strcmp(name, synonyms[k][0]) == 0 && strcmp(choice(row), synonyms[k][1]) == 0)
 				return choice(row);
-	for (int row = 0; choice(row); row++) {
-		int distance = near_name_distance(name, choice(row));
-		if (distance < best) {
-			best = distance;
-			nearest = choice(row);
-		}
-	}
-	return near_name(best, name) ? nearest : NULL;
+	for (int row = 0; choice(row); row++)
+		near_name_try(&search, choice(row));
+	return near_name_found(&search);
 }
 
 static void choice_expected(const struct field *field, char *text, size_t size)

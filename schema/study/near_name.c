@@ -46,3 +46,22 @@ bool near_name(int distance, const char *name)
 	int third = (int)strnlen(name, NAME_MAX_LENGTH) / 3;
 	return distance <= (third < 3 ? third : 3);
 }
+
+struct near_name_search near_name_begin(const char *name)
+{
+	return (struct near_name_search){.name = name};
+}
+
+void near_name_try(struct near_name_search *search, const char *choice)
+{
+	const int distance = near_name_distance(search->name, choice);
+	if (search->nearest && distance >= search->distance)
+		return;
+	search->nearest = choice;
+	search->distance = distance;
+}
+
+const char *near_name_found(const struct near_name_search *search)
+{
+	return search->nearest && near_name(search->distance, search->name) ? search->nearest : NULL;
+}

@@ -24,6 +24,7 @@ static const struct {
     {"response_sweep", " = ", NULL, NULL},
     {"unequal_heights", "a_free", NULL, NULL},
     {"unequal_heights", "       0     1     0.5      2      0.8528     0.05\n", NULL, NULL},
+    {"unequal_heights", "first_m_s over the signals with contact", NULL, NULL},
     {"separation", "P(pounding)", NULL, NULL},
     {"paper", NULL, "\"rows\": 1000", "\"rows\": 40"},
     {"paper_linear", NULL, "\"rows\": 1000", "\"rows\": 60"},
@@ -181,6 +182,7 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 	     "\n force_amplification  S1  -0.08..0.35   0.00..0.61  -0.17..0.60  -0.01..0.17\n"
 	     "                      ST  -0.03..0.54   0.20..0.43   0.36..0.85  -0.14..0.44\n"},
 	    {"spectrum_sensitivity", "\"seed\"", "\"seed\"", "floor_spectrum (8)"},
+	    {"spectrum_sensitivity", "\"seed\"", "\"seed\"", "lowest to highest over frequencies (number"},
 	    {"two_storeys", "\"seed\"", "\"seed\"", " of 19 inputs, those with the smallest indices;"},
 	    // three outputs: both indices; eight outputs: one index, and a line that names the other
 	    {"paper_linear", OF_TWO, OF_THREE, "\n force_amplification S1  0.36 +-0.05  0.0"},
@@ -211,6 +213,77 @@ static void a_table_without_a_name_is_a_summary_of_one_screen(void **state)
 		program_free(&table);
 		program_free(&example);
 		free(study);
+	}
+}
+
+/* Places, groups, and a first output that is constant. */
+static void groups_are_in_the_summary_over_cells_and_places(void **state)
+{
+	static const char study[] =
+	    "{\"kind\": \"sensitivity\", \"scene\": {\"buildings\": [{\"storeys\": 3, \"frequency_hz\": 2, "
+	    "\"mass_kg\": 1e5}, {\"storeys\": 6, \"frequency_hz\": 1.4, \"mass_kg\": 1e5, \"law\": {\"type\": "
+	    "\"elastoplastic\", \"target_demand\": 3}}], \"excitation\": {\"signals\": 2, "
+	    "\"peak_m_s2\": 3}}, \"inputs\": [{\"path\": \"/contact/gap_m\", \"name\": \"gap\", "
+	    "\"distribution\": "
+	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 0.05}}, {\"path\": \"/buildings/0/mass_kg\", \"name\": "
+	    "\"m0\", \"distribution\": {\"type\": \"uniform\", \"min\": 5e4, \"max\": 2e5}}, {\"path\": "
+	    "\"/buildings/0/frequency_hz\", \"name\": \"f0\", \"distribution\": {\"type\": \"uniform\", \"min\": "
+	    "1, "
+	    "\"max\": 3}}], \"groups\": [{\"name\": \"left\", \"of\": [\"/buildings/0/mass_kg\", "
+	    "\"/buildings/0/frequency_hz\"]}], \"outputs\": [\"residual_drift_m\", \"peak_drift_ratio\", "
+	    "\"largest_drift_ratio\", \"peak_shear_n\", \"drift_amplification\"], \"design\": {\"rows\": 40}}";
+	static const struct {
+		const char *was, *is, *words[6];
+	} cases[] = {
+	    {"\"design\"",
+	     "\"design\"",
+	     {"lowest to highest over stories (number in",
+	      "\nS1/ST of the groups left, lowest to highest over stories; ", "peak_drift_ratio:\n",
+	      "; 1 more output:"}},
+	    {"\"design\"",
+	     "\"sweep\": [{\"path\": \"/excitation/frequency_hz\", \"values\": [1, 2]}], \"design\"",
+	     {"\nS1/ST of the groups left, lowest to highest over the 2 cells of the sweep and\nstories; "}},
+	    {"\"residual_drift_m\", \"peak_drift_ratio\", \"largest_drift_ratio\", \"peak_shear_n\", "
+	     "\"drift_amplification\"",
+	     "\"largest_drift_ratio\"",
+	     {"\nS1/ST of the groups left; largest_drift_ratio: "}},
+	};
+	(void)state;
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		char *changed = study_documents_with(study, cases[k].was, cases[k].is);
+		struct program_outcome table =
+		    program_run((const char *const[]){"pound", "run", "--format", "table", "-", NULL}, changed);
+		program_expect(&table, 0);
+		for (int i = 0; i < 6 && cases[k].words[i]; i++)
+			if (!strstr(table.out, cases[k].words[i]))
+				fail_msg("no '%s' in\n%s", cases[k].words[i], table.out);
+		assert_non_null(
+		    strstr(table.out, "\nMore tables (--table NAME): all, inputs, second_order, closed, groups,"));
+		check_screen("groups", table.out);
+		program_free(&table);
+		free(changed);
+	}
+}
+
+static void a_misspelt_name_is_answered_with_the_nearest(void **state)
+{
+	static const char *const calls[][7] = {{"pound", "run", "--format", "tabel", "-"},
+	                                       {"pound", "run", "--format", "csv", "--table", "storey", "-"},
+	                                       {"pound", "example", "papre"},
+	                                       {"pound", "run", "--format", "nonsense", "-"}};
+	static const char *const words[] = {
+	    "no format 'tabel' here, did you mean 'table'? see --help",
+	    "no table 'storey' here, did you mean 'storeys'? there are: inputs ",
+	    "no example 'papre', did you mean 'paper'? there are:", "no format 'nonsense' here; see --help"};
+	(void)state;
+	for (size_t k = 0; k < sizeof words / sizeof words[0]; k++) {
+		const char *arguments[8] = {NULL};
+		memcpy(arguments, calls[k], sizeof calls[k]);
+		struct program_outcome outcome = program_run(arguments, "");
+		program_expect(&outcome, 2);
+		if (!strstr(outcome.err, words[k]))
+			fail_msg("no '%s' in\n%s", words[k], outcome.err);
+		program_free(&outcome);
 	}
 }
 
@@ -350,7 +423,9 @@ static void csv_has_as_many_cells_in_every_row(void **state)
 		program_free(&document);
 	}
 }
-CHECK_MAIN(cmocka_unit_test(every_table_fits_a_terminal_of_80_columns),
+CHECK_MAIN(cmocka_unit_test(groups_are_in_the_summary_over_cells_and_places),
+           cmocka_unit_test(a_misspelt_name_is_answered_with_the_nearest),
+           cmocka_unit_test(every_table_fits_a_terminal_of_80_columns),
            cmocka_unit_test(a_table_has_no_column_for_an_index_that_is_null_throughout),
            cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
            cmocka_unit_test(a_table_without_a_name_is_a_summary_of_one_screen),

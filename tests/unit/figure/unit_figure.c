@@ -515,6 +515,7 @@ static void what_is_no_figure_is_refused_with_a_reason(void **state)
 		const char *detail;
 	} cases[] = {
 	    {"nothing", {0}, FIGURE_UNKNOWN, "no figure is called \"nothing\""},
+	    {"heigth", {0}, FIGURE_UNKNOWN, "no figure is called \"heigth\", did you mean \"heights\"?"},
 	    {"indices", {0}, FIGURE_ABSENT, "kind \"sensitivity\", not \"response\"; it has: responses"},
 	    {"history", {0}, FIGURE_ABSENT, "no figure \"history\""},
 	    {"heights", {0}, FIGURE_ABSENT, "it shows a row of buildings; it has: responses"},
@@ -624,7 +625,38 @@ static void a_figure_that_a_result_has_not_says_what_it_needs(void **state)
 	}
 }
 
+#define CONSTANT                                                                                             \
+	"{\"name\": \"constant\", \"inputs\": [{\"name\": \"a\"}, {\"name\": \"b\"}], \"accuracy\": {\"rows\": " \
+	"[60]}}, "
+
+/* Whatever the first outputs are, a figure is drawn from the outputs that have its numbers. */
+static void a_constant_output_hides_no_figure(void **state)
+{
+	static const char json[] =
+	    "{\"kind\": \"sensitivity\", \"engine_version\": \"1\", \"cells\": [{\"outputs\": "
+	    "[" CONSTANT CONSTANT CONSTANT CONSTANT CONSTANT CONSTANT
+	    "{\"name\": \"impulse\", \"mean\": 1, \"inputs\": [{\"name\": \"a\", \"S1\": 0.5}, {\"name\": \"b\", "
+	    "\"S1\": 0.5}], \"second_order\": [{\"inputs\": [\"a\", \"b\"], \"S2\": 0.5}], "
+	    "\"conditional_means\": [{\"name\": \"a\", \"x\": [1, 2], \"mean\": [1, 2], \"low\": [1, 2], "
+	    "\"high\": [1, 2]}], \"accuracy\": {\"rows\": [30, 60], \"inputs\": [{\"name\": \"a\", "
+	    "\"S1_half_widths\": [0.5, 0.25], \"ST_half_widths\": [0.5, 0.25]}]}}]}]}";
+	static const char *const names[] = {"given", "pairs", "widths"};
+	const struct figure_source source = {.json = json, .length = sizeof json - 1};
+	(void)state;
+	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+		struct figure figure = drawn(names[i], &source, &(struct figure_choice){0});
+		assert_non_null(strstr(figure.svg, "impulse"));
+		assert_null(strstr(figure.svg, "constant"));
+		free(figure.svg);
+		assert_int_equal(
+		    figure_draw(names[i], &source, &(struct figure_choice){.output = "constant"}, &figure),
+		    FIGURE_CHOICE);
+		assert_string_equal(figure.detail, "output \"constant\" has no numbers for this figure in this cell");
+	}
+}
+
 CHECK_MAIN(cmocka_unit_test(a_figure_that_a_result_has_not_says_what_it_needs),
+           cmocka_unit_test(a_constant_output_hides_no_figure),
            cmocka_unit_test(ticks_of_any_range_are_few_and_inside),
            cmocka_unit_test(the_text_of_a_tick_has_the_digits_it_needs),
            cmocka_unit_test(every_figure_of_every_example_is_well_formed_and_within_its_view_box),

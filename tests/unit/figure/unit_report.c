@@ -134,6 +134,29 @@ static void a_report_of_a_row_has_the_gap_of_each_contact(void **state)
 	source_free(&source);
 }
 
+/* Every table that names an output names its building and story. */
+static void a_report_says_of_which_place_a_row_of_a_table_is(void **state)
+{
+	static const char result[] =
+	    "{\"kind\": \"sensitivity\", \"engine_version\": \"1\", \"cells\": [{\"outputs\": [{\"name\": "
+	    "\"peak_drift_m\", \"contact\": 3, \"building\": 1, \"storey\": 2, \"mean\": 5, \"variance\": 6, "
+	    "\"inputs\": "
+	    "[{\"name\": "
+	    "\"a\", \"S1\": 0.5}], \"groups\": [{\"name\": \"g\", \"S1\": 0.25}]}]}]}";
+	size_t n;
+	(void)state;
+	char *page =
+	    report_html(&(struct figure_source){.json = result, .length = sizeof result - 1}, NULL, 0, &n);
+	assert_non_null(page);
+	assert_int_equal(count(page, ">output.contact</th><th scope=\"col\">output.building</th><th "
+	                             "scope=\"col\">output.storey</th>"),
+	                 3); // inputs, groups and outputs
+	assert_int_equal(count(page, "<td>peak_drift_m</td><td>3</td><td>1</td><td>2</td>"), 3);
+	assert_int_equal(count(page, "<td>peak_drift_m</td><td>3</td><td>1</td><td>2</td><td>5</td></tr>"), 1);
+	assert_null(strstr(page, "output.variance"));
+	free(page);
+}
+
 static void warnings_are_said_first(void **state)
 {
 	size_t n;
@@ -180,5 +203,6 @@ static void what_is_no_result_has_no_report(void **state)
 CHECK_MAIN(cmocka_unit_test(a_report_has_every_figure_table_note_and_what_was_left_out),
            cmocka_unit_test(a_report_of_a_swept_study_has_the_indices_of_each_cell),
            cmocka_unit_test(a_report_of_a_row_has_the_gap_of_each_contact),
+           cmocka_unit_test(a_report_says_of_which_place_a_row_of_a_table_is),
            cmocka_unit_test(warnings_are_said_first), cmocka_unit_test(a_hostile_name_stays_text),
            cmocka_unit_test(what_is_no_result_has_no_report))

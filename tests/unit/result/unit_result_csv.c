@@ -251,6 +251,31 @@ static void a_line_that_lacks_a_column_leaves_it_empty(void **state)
 	          "peak_drift_m,,0,1,2\r\ngap_needed_m,4,,,5\r\ncontact_count,,,,7\r\n");
 }
 
+static void every_table_of_outputs_says_of_which_place_a_row_is(void **state)
+{
+	(void)state;
+	static const char json[] =
+	    "{\"cells\": [{\"outputs\": [{\"name\": \"peak_drift_m\", \"building\": 1, \"storey\": 2, "
+	    "\"second_order\": [{\"inputs\": [\"a\", \"b\"], \"S2\": 3}], "
+	    "\"closed\": [{\"inputs\": [\"a\"], \"S_closed\": 4}], \"groups\": [{\"name\": \"g\", \"S1\": 5}], "
+	    "\"ratios\": {\"explained\": 6, \"variables\": [{\"name\": \"a/b\", \"S1\": 7}]}, "
+	    "\"conditional_means\": [{\"name\": \"a\", \"x\": [8], \"mean\": [9], \"low\": [8], \"high\": "
+	    "[10]}]}, {\"name\": \"gap_needed_m\", \"contact\": 4, \"building\": null, \"storey\": null, "
+	    "\"groups\": [{\"name\": \"g\", \"S1\": 6}]}]}]}";
+	tabulates(json, "second_order",
+	          "output.name,output.building,output.storey,input_1,input_2,S2\r\npeak_drift_m,1,2,a,b,3\r\n");
+	tabulates(json, "closed",
+	          "output.name,output.building,output.storey,input_1,S_closed\r\npeak_drift_m,1,2,a,4\r\n");
+	tabulates(json, "groups",
+	          "output.name,output.contact,output.building,output.storey,name,S1\r\n"
+	          "peak_drift_m,,1,2,g,5\r\ngap_needed_m,4,,,g,6\r\n");
+	tabulates(json, "ratios",
+	          "output.name,output.building,output.storey,explained,name,S1\r\npeak_drift_m,1,2,6,a/b,7\r\n");
+	tabulates(json, "conditional_means",
+	          "output.name,output.building,output.storey,name,x,mean,low,high\r\n"
+	          "peak_drift_m,1,2,a,8,9,8,10\r\n");
+}
+
 static void a_cell_is_read_back_as_it_was_written(void **state)
 {
 	(void)state;
@@ -280,5 +305,6 @@ CHECK_MAIN(cmocka_unit_test(a_row_for_every_cell_output_and_input),
            cmocka_unit_test(each_contact_of_a_row_has_lines_of_its_own),
            cmocka_unit_test(stories_and_contacts_of_a_row_are_lines),
            cmocka_unit_test(a_line_that_lacks_a_column_leaves_it_empty),
+           cmocka_unit_test(every_table_of_outputs_says_of_which_place_a_row_is),
            cmocka_unit_test(a_cell_is_read_back_as_it_was_written),
            cmocka_unit_test(what_is_no_result_gives_no_table))

@@ -491,6 +491,12 @@ static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(
 	     "width.",
 	     ""},
 	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, of ST of input f_2, output force.", ""},
+	    // stories have the same output name
+	    {"{\"cells\": [{\"outputs\": [{\"name\": \"peak_shear_n\", \"building\": 1, \"storey\": 5, "
+	     "\"accuracy\": "
+	     "{\"rows\": [60], \"inputs\": [{\"name\": \"pga\", \"S1_half_widths\": [0.5]}]}}]}]}",
+	     "The widest 95 % interval is +-0.5, of S1 of input pga, output peak_shear_n, building 1, story 5.",
+	     ""},
 	    {"{\"kind\": \"response\"}", "", ""},
 	};
 	(void)state;
