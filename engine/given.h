@@ -45,13 +45,15 @@ struct pound_given {
 	X(POUND_GIVEN_CONSTANT,                                                           \
 	  "the output is the same for every sample, so it has no indices")                \
 	X(POUND_GIVEN_ALL_NOISE,                                                          \
-	  "the variance of the output is not larger than that of its noise, so it has no indices: use more replicates") \
+	  "the variance of the output may be that of its noise alone, so indices cannot be estimated: use more replicates") \
 	X(POUND_GIVEN_UNEXPLAINED,                                                        \
-	  "ST and S2 cannot be estimated: the cross-validated R2 of the polynomial is below 0.9; use more samples, or run your model on the rows of `pound design'") \
+	  "ST and S2 cannot be estimated: the cross-validated R2 of the polynomial is below 0.9; if the output has noise or depends on inputs that are missing, give replicates or add these inputs; otherwise use more samples, or run your model on the rows of `pound design'") \
 	X(POUND_GIVEN_FIRST_UNKNOWN,                                                      \
 	  "S1 cannot be estimated: no polynomial fits, and the samples are not random")   \
 	X(POUND_GIVEN_FEW_DECIDE,                                                         \
-	  "few samples hold most of the variance, so intervals may be too narrow: use more samples, or indices of the logarithm of the output")
+	  "few samples hold most of the variance, so intervals may be too narrow: use more samples") \
+	X(POUND_GIVEN_LOGARITHM,                                                          \
+	  "all values of the output are positive: indices of its logarithm need fewer samples")
 // clang-format on
 
 #define X(name, text) name,

@@ -419,6 +419,14 @@ static bool few_decide(const struct space *s, int n)
 	return squares * squares < fmin(ROWS_BEHIND, n / KURTOSIS_MOST) * fourths;
 }
 
+static bool positive(const double *y, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (!(y[i] > 0.0))
+			return false;
+	return true;
+}
+
 /* The indices of an output that the samples can estimate.
  *
  * Given    given      -
@@ -466,7 +474,9 @@ void pound_given_estimate(const struct pound_given *given, const struct pound_gi
 	if (!by_factorial)
 		others_fill(given, p, indices);
 	if (!factorial) {
-		indices->notes |= few_decide(&s, given->n_rows) ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+		if (few_decide(&s, given->n_rows))
+			indices->notes |= 1u << POUND_GIVEN_FEW_DECIDE | (unsigned)positive(output->y, given->n_rows)
+			                                                     << POUND_GIVEN_LOGARITHM;
 		first_fill(&rows, &s, p, neighbors, indices);
 	} else if (!by_factorial)
 		pound_factorial_indices(given, output, s.rest, indices);

@@ -192,7 +192,7 @@ static bool column_sorted(const struct samples *s, const struct given_table *tab
 }
 
 /* Joins replicates, and sorts out what is known of the samples. */
-static void samples_join(const struct given_table *x, struct samples *s, struct problems *problems)
+static void samples_join(const struct given_table *x, struct samples *s, struct problems problems[2])
 {
 	const int n = s->n_rows, d = x->n_columns;
 	s->given.n_rows = pound_given_join(n, d, s->x, s->table, s->sample);
@@ -210,18 +210,20 @@ static void samples_join(const struct given_table *x, struct samples *s, struct 
 	for (int c = 0; c < s->outputs->n_columns; c++)
 		s->given.sorted |= column_sorted(s, s->outputs, c);
 	if (n < POUND_GIVEN_ROWS_MIN)
-		problems_add(
-		    problems, "",
-		    "%d samples are complete, expected at least %d; with fewer runs use a study: `pound design'", n,
-		    POUND_GIVEN_ROWS_MIN);
+		problems_add(&problems[GIVEN_OUTPUTS], "",
+		             "%d samples are complete, expected at least %d: new runs are needed, of more samples or "
+		             "of the rows of `pound design'",
+		             n, POUND_GIVEN_ROWS_MIN);
 	else if (s->given.n_rows < POUND_GIVEN_ROWS_MIN)
-		problems_add(problems, "", "the %d complete lines have %d different inputs, expected at least %d", n,
-		             s->given.n_rows, POUND_GIVEN_ROWS_MIN);
+		problems_add(&problems[GIVEN_INPUTS], "",
+		             "the %d complete lines are replicates of %d points, expected at least %d points: new "
+		             "runs at other points are needed",
+		             n, s->given.n_rows, POUND_GIVEN_ROWS_MIN);
 }
 
 /* Takes the complete samples; adds a problem for every constant input. */
 static void samples_take(const struct given_table *x, const struct given_table *y, struct samples *s,
-                         struct problems *problems)
+                         struct problems problems[2])
 {
 	const int d = x->n_columns;
 	int n = 0;
@@ -240,7 +242,7 @@ static void samples_take(const struct given_table *x, const struct given_table *
 		for (int i = 1; i < n; i++)
 			varies |= s->x[(size_t)i * d + j] != s->x[j];
 		if (!varies)
-			problems_add(problems, x->names[j],
+			problems_add(&problems[GIVEN_INPUTS], x->names[j],
 			             "has the same value in every complete sample; leave this input out");
 		s->given.inputs[j] = (struct pound_input){.name = x->names[j]};
 	}
@@ -426,28 +428,31 @@ static char *result_of(struct samples *s, size_t *length)
 /* The indices of the outputs of given samples.
  *
  * Given    x, y       -         -       inputs and outputs, with one line per sample in the same order
- * Returns  value      (length)  -       JSON; NULL: failed, see problems->status; pointers are into the outputs
+ * Returns  value      (length)  -       JSON; NULL: failed, see problems
+ *          problems    (2)       -       of the inputs and of the outputs, enum given_role
  * Memory   allocates; the caller frees
  *
  * Test     unit_given_table: indices_of_two_tables_are_those_of_the_engine
  */
-char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,
+char *given_indices(const struct given_table *x, const struct given_table *y, struct problems problems[2],
                     size_t *length)
 {
 	struct samples s = {0};
+	struct problems *const of_inputs = &problems[GIVEN_INPUTS], *const of_outputs = &problems[GIVEN_OUTPUTS];
 	char *json = NULL;
-	problems_init(problems);
+	problems_init(of_inputs);
+	problems_init(of_outputs);
 	if (samples_init(&s, x, y)) {
 		if (x->n_rows != y->n_rows)
-			problems_add(problems, "", "has %d samples, but the inputs have %d", y->n_rows, x->n_rows);
-		outputs_find(x, y, &s, problems);
+			problems_add(of_outputs, "", "must have %d samples, as the inputs, got %d", x->n_rows, y->n_rows);
+		outputs_find(x, y, &s, of_outputs);
 		if (x->n_rows == y->n_rows)
 			samples_take(x, y, &s, problems);
-		if (problems->status == PROBLEMS_NONE)
+		if (of_inputs->status == PROBLEMS_NONE && of_outputs->status == PROBLEMS_NONE)
 			json = result_of(&s, length);
 	}
-	if (!json && problems->status == PROBLEMS_NONE)
-		problems->status = PROBLEMS_NOMEM;
+	if (!json && of_inputs->status == PROBLEMS_NONE && of_outputs->status == PROBLEMS_NONE)
+		of_outputs->status = PROBLEMS_NOMEM;
 	samples_free(&s);
 	return json;
 }

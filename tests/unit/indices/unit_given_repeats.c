@@ -456,9 +456,16 @@ static void heavy_tails_are_noted(void **state)
 		for (int j = 0; j < 3; j++)
 			given_check_holds(indices.first[j], (exp(sd[j] * sd[j]) - 1.0) / all, "S1", &misses);
 		const bool note = given_says(indices.notes, POUND_GIVEN_FEW_DECIDE);
+		assert_true(given_says(indices.notes, POUND_GIVEN_LOGARITHM) == note);
 		missed += misses;
 		noted += note;
 		missed_silent += note ? 0 : misses;
+		// the same with a value of zero has no logarithm
+		const double one = s.y[0];
+		s.y[0] = 0.0;
+		given_estimate(&s, &indices);
+		assert_false(given_says(indices.notes, POUND_GIVEN_LOGARITHM));
+		s.y[0] = one;
 		// a normal output of the same inputs has no note
 		for (int i = 0; i < N; i++)
 			s.y[i] = log(s.y[i]);
