@@ -31,6 +31,10 @@ struct pound_given {
 	  "given data cannot separate the noise of an output from interactions of its inputs: S1 is a share of the variance with the noise") \
 	X(POUND_GIVEN_DEPENDENT,                                                          \
 	  "the inputs are not independent: S1 includes what an input explains through the inputs that it depends on, and ST and S2 cannot be estimated") \
+	X(POUND_GIVEN_NOT_MONOTONIC,                                                      \
+	  "the dependence of the inputs is not monotonic, so their rank correlation is small") \
+	X(POUND_GIVEN_COLLINEAR,                                                          \
+	  "the rank correlation of two inputs is nearly 1 or -1: these samples cannot separate their effects") \
 	X(POUND_GIVEN_ARRANGED,                                                           \
 	  "samples that are near in one input have a pattern in another, as points of a Sobol' or Halton sequence, an incomplete grid or rows of `pound design' have: S1 needs a polynomial that fits; for rows of `pound design' use `pound indices STUDY.json Y.csv'") \
 	X(POUND_GIVEN_SERIAL,                                                             \

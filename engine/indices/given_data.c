@@ -30,6 +30,7 @@ enum {
 
 // limits of the checks in standard errors: with hundreds (thousands) of normal deviates, 1 % of sample sets fail by chance
 static const double DEPENDENT = 4.0, ARRANGED = 5.0;
+static const double COLLINEAR = 0.99;      // rank correlation
 static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
 // coverage of S1 by the effective rows of the variance, n / kurtosis: engine/indices/statistics.md
 static const double ROWS_BEHIND = 50.0, KURTOSIS_MOST = 20.0;
@@ -241,7 +242,8 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 {
 	const int n = given->n_rows, d = given->n_inputs;
 	struct space s;
-	bool dependent = false, serial = false, noisy = !given->noise_known && given->replicates < 2;
+	bool dependent = false, monotonic = false, collinear = false, serial = false,
+	     noisy = !given->noise_known && given->replicates < 2;
 	double variance[POUND_INPUTS_MAX];
 	carve(&s, scratch, n, d);
 	shuffle(&s, n);
@@ -255,19 +257,23 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 	for (int i = 0; i < d; i++)
 		for (int j = i + 1; j < d; j++) {
 			const double r = correlation(&s, n, d, i, j), more = sqrt(variance[i] * variance[j]);
-			const bool independent =
-			    fabs(r) * sqrt((n - 1.0) / more) <= DEPENDENT && !uneven(&s, n, d, (const int[]){i, j}, more);
-			// the first dependent pair, or without one the most correlated pair
-			if (checks->pair[0] < 0 ||
-			    (!dependent && (!independent || fabs(r) > fabs(checks->correlation)))) {
+			const bool correlates = fabs(r) * sqrt((n - 1.0) / more) > DEPENDENT,
+			           depends = correlates || uneven(&s, n, d, (const int[]){i, j}, more),
+			           stronger = fabs(r) > fabs(checks->correlation);
+			// the most correlated of the dependent pairs, or without one of all pairs
+			if (checks->pair[0] < 0 || (depends && !dependent) || (depends == dependent && stronger)) {
 				checks->pair[0] = i, checks->pair[1] = j;
 				checks->correlation = r;
 			}
-			dependent |= !independent;
+			dependent |= depends;
+			monotonic |= correlates;
+			collinear |= fabs(r) > COLLINEAR;
 		}
 	const bool said[POUND_GIVEN_N_SAMPLES_NOTES] = {
 	    [POUND_GIVEN_NOISE] = noisy,
 	    [POUND_GIVEN_DEPENDENT] = dependent,
+	    [POUND_GIVEN_NOT_MONOTONIC] = dependent && !monotonic,
+	    [POUND_GIVEN_COLLINEAR] = collinear,
 	    [POUND_GIVEN_ARRANGED] = given->replicates == 0 && arranged_by_any(given, &s),
 	    [POUND_GIVEN_SERIAL] = serial,
 	    [POUND_GIVEN_REPLICATES] = given->joined,
