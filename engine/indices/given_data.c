@@ -277,6 +277,7 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 	    [POUND_GIVEN_ARRANGED] = given->replicates == 0 && arranged_by_any(given, &s),
 	    [POUND_GIVEN_SERIAL] = serial,
 	    [POUND_GIVEN_REPLICATES] = given->joined,
+	    [POUND_GIVEN_POOLED] = given->pooled,
 	    [POUND_GIVEN_FACTORIAL] = given->replicates > 0,
 	};
 	for (int k = 0; k < POUND_GIVEN_N_SAMPLES_NOTES; k++)
@@ -371,7 +372,9 @@ static void others_fill(const struct pound_given *given, const struct pound_poly
 		for (int j = i + 1; j < d; j++, indices->n_second++)
 			indices->second[indices->n_second] = (struct pound_set_index){
 			    1u << i | 1u << j, widened(p->value[2 * d + indices->n_second], indices->explained)};
-	indices->notes |= p && !fits ? 1u << POUND_GIVEN_UNEXPLAINED : 0u;
+	if (p && !fits)
+		indices->notes |= 1u << POUND_GIVEN_UNEXPLAINED | (unsigned)!given->noise_known
+		                                                      << POUND_GIVEN_NOISE_LIMITS;
 }
 
 /* Conditional means: of the polynomial plus of its residual. */

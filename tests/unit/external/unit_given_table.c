@@ -215,12 +215,12 @@ struct tables {
 	size_t n_x, n_y;
 };
 
-static void tables_open(struct tables *t, const char *outputs)
+static void tables_open(struct tables *t, const char *outputs, const char *inputs)
 {
 	*t = (struct tables){0};
 	t->inputs = open_memstream(&t->x, &t->n_x);
 	t->outputs = open_memstream(&t->y, &t->n_y);
-	fputs("a,b\n", t->inputs);
+	fprintf(t->inputs, "%s\n", inputs);
 	fprintf(t->outputs, "%s\n", outputs);
 }
 
@@ -271,7 +271,7 @@ static void variances_and_replicates_are_no_outputs(void **state)
 	for (int k = 0; k < 3; k++) {
 		struct tables t;
 		struct problems problems[2];
-		tables_open(&t, headers[k]);
+		tables_open(&t, headers[k], "a,b");
 		for (int i = 0; i < ROWS; i++) {
 			const double a = point(i, 0), b = point(i, 1), y = a + b, off = 0.25 * (point(i + ROWS, 0) - 0.5);
 			for (int line = 0; line < (k == 2 ? 2 : 1); line++)
@@ -317,7 +317,7 @@ static void columns_that_do_not_make_an_output_are_refused(void **state)
 	for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
 		struct tables t;
 		struct problems problems[2];
-		tables_open(&t, bad[k].header);
+		tables_open(&t, bad[k].header, "a,b");
 		for (int i = 0; i < N; i++) {
 			fprintf(t.inputs, "%.17g,%.17g\n", point(i, 0), point(i, 1));
 			fprintf(t.outputs, "%s\n", bad[k].cells);
@@ -338,7 +338,7 @@ static void a_sorted_table_is_no_markov_chain(void **state)
 	for (int sorted = 0; sorted < 2; sorted++) {
 		struct tables t;
 		struct problems problems[2];
-		tables_open(&t, "y");
+		tables_open(&t, "y", "a,b");
 		for (int i = 0; i < ROWS; i++) {
 			// a and y ascend, but for a shuffle of neighbors in a; without the sorted output it looks like a chain
 			const double y = sorted ? i : point(i, 0), a = i + 30 * point(i, 1);
@@ -352,12 +352,56 @@ static void a_sorted_table_is_no_markov_chain(void **state)
 	}
 }
 
+/* x1 + x2 x3 of independent bits with noise, in lines drawn at random: 0.25 by x1, and 0.1875 by x2 x3, a third each for x2, x3 and
+ * both; the variance of the noise is 0.25. */
+static void samples_at_few_points_have_the_noise_of_their_spread(void **state)
+{
+	(void)state;
+	enum { SEEDS = 40, ROWS = 600 };
+	static const double first[] = {4 / 7.0, 1 / 7.0, 1 / 7.0}, total[] = {4 / 7.0, 2 / 7.0, 2 / 7.0};
+	int missed = 0;
+	double share = 0.0;
+	for (int seed = 0; seed < SEEDS; seed++) {
+		struct tables t;
+		struct problems problems[2];
+		tables_open(&t, "y", "x1,x2,x3");
+		for (int i = seed * ROWS; i < (seed + 1) * ROWS; i++) {
+			const int a = point(i, 0) < 0.5, b = point(i, 1) < 0.5, c = point(i + SEEDS * ROWS, 0) < 0.5;
+			const double noise = sqrt(12) * (point(i + SEEDS * ROWS, 1) - 0.5);
+			fprintf(t.inputs, "%d,%d,%d\n", a, b, c);
+			fprintf(t.outputs, "%.17g\n", a + b * c + 0.5 * noise);
+		}
+		struct reading *result = tables_close(&t, problems);
+		assert_non_null(result);
+		check_near(reading_number(result, "/given/samples"), ROWS, 0);
+		check_near(reading_number(result, "/given/points"), 8, 0);
+		assert_false(notes_have(result, "cannot separate the noise"));
+		assert_true(notes_have(result, "samples with the same inputs is its noise"));
+		share += reading_number(result, "/cells/0/outputs/0/noise_share") / SEEDS;
+		for (int j = 0; j < 3; j++) {
+			static const char *const names[] = {"S1", "ST"};
+			for (int k = 0; k < 2; k++) {
+				const char *at = "/cells/0/outputs/0/inputs";
+				const double exact = k == 0 ? first[j] : total[j],
+				             low = reading_number(result, "%s/%d/%s_low", at, j, names[k]),
+				             high = reading_number(result, "%s/%d/%s_high", at, j, names[k]);
+				assert_true(isfinite(low) && isfinite(high));
+				missed += !(low <= exact && exact <= high);
+			}
+		}
+		reading_close(result);
+	}
+	check_report("%d of %d intervals missed", missed, SEEDS * 6);
+	assert_true(missed <= 0.08 * SEEDS * 6);
+	check_near(share, 0.25 / (0.25 + 0.4375), 0.01);
+}
+
 static void few_different_inputs_are_refused(void **state)
 {
 	(void)state;
 	struct tables t;
 	struct problems problems[2];
-	tables_open(&t, "y");
+	tables_open(&t, "y", "a,b");
 	for (int i = 0; i < N; i++) {
 		fprintf(t.inputs, "%.17g,%.17g\n", point(i / 2, 0), point(i / 2, 1));
 		fprintf(t.outputs, "%d\n", i);
@@ -376,4 +420,5 @@ CHECK_MAIN(cmocka_unit_test(indices_of_two_tables_are_those_of_the_engine),
            cmocka_unit_test(variances_and_replicates_are_no_outputs),
            cmocka_unit_test(columns_that_do_not_make_an_output_are_refused),
            cmocka_unit_test(a_sorted_table_is_no_markov_chain),
+           cmocka_unit_test(samples_at_few_points_have_the_noise_of_their_spread),
            cmocka_unit_test(few_different_inputs_are_refused))

@@ -128,6 +128,13 @@ static void what_no_polynomial_explains_has_no_total_indices(void **state)
 	given_check(&s);
 	given_estimate(&s, &indices);
 	assert_true(given_says(indices.notes, POUND_GIVEN_UNEXPLAINED));
+	assert_true(given_says(indices.notes, POUND_GIVEN_NOISE_LIMITS));
+	// without noise it is not the cause
+	memset(s.noise, 0, sizeof *s.noise * N);
+	s.given.noise_known = true;
+	given_estimate(&s, &indices);
+	assert_true(given_says(indices.notes, POUND_GIVEN_UNEXPLAINED));
+	assert_false(given_says(indices.notes, POUND_GIVEN_NOISE_LIMITS));
 	assert_int_equal(indices.n_second, 0);
 	for (int j = 0; j < D; j++) {
 		assert_true(isnan(indices.total[j].value));
