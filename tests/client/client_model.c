@@ -164,6 +164,8 @@ static void given_samples_are_drawn_and_reported_as_a_study_is(void **state)
 		struct program_outcome figure = POUND("plot", figures[k], result);
 		program_expect(&figure, 0);
 		assert_non_null(strstr(figure.out, "</svg>"));
+		// one line for each combination: no noise is known
+		assert_null(strstr(figure.out, "oise of "));
 		program_free(&figure);
 	}
 	struct program_outcome none = POUND("plot", "widths", result);
