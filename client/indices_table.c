@@ -488,7 +488,14 @@ void indices_print(const struct reading *result)
 void given_data_print(const struct reading *result)
 {
 	const double missing = reading_number(result, "/given/samples_missing");
-	printf("%.0f samples", reading_number(result, "/given/samples"));
+	const double samples = reading_number(result, "/given/samples"),
+	             points = reading_number(result, "/given/points"),
+	             lines = reading_number(result, "/cells/0/runs");
+	printf("%.0f samples", samples);
+	if (points < samples)
+		printf(" at %.0f different points", points);
+	if (lines > samples)
+		printf(", the means of %.0f lines", lines);
 	if (missing > 0)
 		printf("; %.0f more are left out because a number is missing", missing);
 	putchar('\n');

@@ -98,9 +98,13 @@ static enum outcome given_print(const struct options *options)
 	outcome = inputs ? of_outputs : outcome;
 	if (inputs && outputs) {
 		size_t n;
-		struct problems problems;
-		char *json = given_indices(&x, &y, &problems, &n);
-		outcome = json ? show_result(json, n, options) : document_reject(options->second, &problems);
+		struct problems problems[2]; // of each role
+		char *json = given_indices(&x, &y, problems, &n);
+		outcome = json ? show_result(json, n, options) : OUTCOME_FAILED;
+		for (int role = 0; role < 2 && !json; role++)
+			if (problems[role].status != PROBLEMS_NONE)
+				outcome = document_reject(role == GIVEN_INPUTS ? options->argument : options->second,
+				                          &problems[role]);
 		free(json);
 	}
 	given_table_free(&x);

@@ -15,6 +15,7 @@ struct pound_given {
 	int n_rows, n_inputs;       /* [POUND_GIVEN_ROWS_MIN, POUND_ROWS_MAX], [1, POUND_INPUTS_MAX] */
 	const double *x;            /* finite; each input has at least two distinct values  (n_rows x n_inputs) */
 	bool joined;                /* samples are means of replicates, by pound_given_join */
+	bool pooled;                /* the noise is the spread of samples with the same inputs */
 	bool noise_known;           /* the noise variance of every sample's output is known */
 	bool sorted;                /* the rows are sorted by a column: their order says nothing */
 	struct pound_input *inputs; /* empirical distributions of x, by pound_given_inputs  (n_inputs) */
@@ -31,12 +32,18 @@ struct pound_given {
 	  "given data cannot separate the noise of an output from interactions of its inputs: S1 is a share of the variance with the noise") \
 	X(POUND_GIVEN_DEPENDENT,                                                          \
 	  "the inputs are not independent: S1 includes what an input explains through the inputs that it depends on, and ST and S2 cannot be estimated") \
+	X(POUND_GIVEN_NOT_MONOTONIC,                                                      \
+	  "the dependence of the inputs is not monotonic, so their rank correlation is small") \
+	X(POUND_GIVEN_COLLINEAR,                                                          \
+	  "the rank correlation of two inputs is nearly 1 or -1: these samples cannot separate their effects") \
 	X(POUND_GIVEN_ARRANGED,                                                           \
 	  "samples that are near in one input have a pattern in another, as points of a Sobol' or Halton sequence, an incomplete grid or rows of `pound design' have: S1 needs a polynomial that fits; for rows of `pound design' use `pound indices STUDY.json Y.csv'") \
 	X(POUND_GIVEN_SERIAL,                                                             \
 	  "successive samples are correlated: if they are of a Markov chain or a time series, intervals are too narrow; if their lines were sorted, intervals are valid") \
 	X(POUND_GIVEN_REPLICATES,                                                         \
 	  "rows with the same values of all inputs are replicates of one sample: their mean counts once, however many they are") \
+	X(POUND_GIVEN_POOLED,                                                             \
+	  "the spread of the output among samples with the same inputs is its noise, and the indices are those of the mean without noise") \
 	X(POUND_GIVEN_FACTORIAL,                                                          \
 	  "the samples are a complete factorial design: indices are those of its levels, all equally likely")
 
@@ -45,13 +52,17 @@ struct pound_given {
 	X(POUND_GIVEN_CONSTANT,                                                           \
 	  "the output is the same for every sample, so it has no indices")                \
 	X(POUND_GIVEN_ALL_NOISE,                                                          \
-	  "the variance of the output is not larger than that of its noise, so it has no indices: use more replicates") \
+	  "the variance of the output may be that of its noise alone, so indices cannot be estimated: use more replicates") \
 	X(POUND_GIVEN_UNEXPLAINED,                                                        \
 	  "ST and S2 cannot be estimated: the cross-validated R2 of the polynomial is below 0.9; use more samples, or run your model on the rows of `pound design'") \
+	X(POUND_GIVEN_NOISE_LIMITS,                                                       \
+	  "noise or missing inputs may be the cause, which more samples do not remove: give replicates, or add these inputs") \
 	X(POUND_GIVEN_FIRST_UNKNOWN,                                                      \
 	  "S1 cannot be estimated: no polynomial fits, and the samples are not random")   \
 	X(POUND_GIVEN_FEW_DECIDE,                                                         \
-	  "few samples hold most of the variance, so intervals may be too narrow: use more samples, or indices of the logarithm of the output")
+	  "few samples hold most of the variance, so intervals may be too narrow: use more samples") \
+	X(POUND_GIVEN_LOGARITHM,                                                          \
+	  "all values of the output are positive: indices of its logarithm need fewer samples")
 // clang-format on
 
 #define X(name, text) name,
@@ -81,6 +92,9 @@ struct pound_given_indices {
  * (pound_given_join_slots); value: number of samples */
 int pound_given_join_slots(int n_rows);
 int pound_given_join(int n_rows, int n_inputs, const double *x, int *table, int *sample);
+
+/* Numbers the different points of the inputs.  point: of each row  (n_rows); table: as above; value: number of points */
+int pound_given_points(int n_rows, int n_inputs, const double *x, int *table, int *point);
 
 /* Sets the distributions of the inputs, and finds a factorial design; values: their memory  (2 x n_inputs x n_rows);
  * cell: memory  (n_rows); order: scratch  (n_rows) */

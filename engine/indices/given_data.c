@@ -30,6 +30,7 @@ enum {
 
 // limits of the checks in standard errors: with hundreds (thousands) of normal deviates, 1 % of sample sets fail by chance
 static const double DEPENDENT = 4.0, ARRANGED = 5.0;
+static const double COLLINEAR = 0.99;      // rank correlation
 static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
 // coverage of S1 by the effective rows of the variance, n / kurtosis: engine/indices/statistics.md
 static const double ROWS_BEHIND = 50.0, KURTOSIS_MOST = 20.0;
@@ -241,7 +242,8 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 {
 	const int n = given->n_rows, d = given->n_inputs;
 	struct space s;
-	bool dependent = false, serial = false, noisy = !given->noise_known && given->replicates < 2;
+	bool dependent = false, monotonic = false, collinear = false, serial = false,
+	     noisy = !given->noise_known && given->replicates < 2;
 	double variance[POUND_INPUTS_MAX];
 	carve(&s, scratch, n, d);
 	shuffle(&s, n);
@@ -255,22 +257,27 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 	for (int i = 0; i < d; i++)
 		for (int j = i + 1; j < d; j++) {
 			const double r = correlation(&s, n, d, i, j), more = sqrt(variance[i] * variance[j]);
-			const bool independent =
-			    fabs(r) * sqrt((n - 1.0) / more) <= DEPENDENT && !uneven(&s, n, d, (const int[]){i, j}, more);
-			// the first dependent pair, or without one the most correlated pair
-			if (checks->pair[0] < 0 ||
-			    (!dependent && (!independent || fabs(r) > fabs(checks->correlation)))) {
+			const bool correlates = fabs(r) * sqrt((n - 1.0) / more) > DEPENDENT,
+			           depends = correlates || uneven(&s, n, d, (const int[]){i, j}, more),
+			           stronger = fabs(r) > fabs(checks->correlation);
+			// the most correlated of the dependent pairs, or without one of all pairs
+			if (checks->pair[0] < 0 || (depends && !dependent) || (depends == dependent && stronger)) {
 				checks->pair[0] = i, checks->pair[1] = j;
 				checks->correlation = r;
 			}
-			dependent |= !independent;
+			dependent |= depends;
+			monotonic |= correlates;
+			collinear |= fabs(r) > COLLINEAR;
 		}
 	const bool said[POUND_GIVEN_N_SAMPLES_NOTES] = {
 	    [POUND_GIVEN_NOISE] = noisy,
 	    [POUND_GIVEN_DEPENDENT] = dependent,
+	    [POUND_GIVEN_NOT_MONOTONIC] = dependent && !monotonic,
+	    [POUND_GIVEN_COLLINEAR] = collinear,
 	    [POUND_GIVEN_ARRANGED] = given->replicates == 0 && arranged_by_any(given, &s),
 	    [POUND_GIVEN_SERIAL] = serial,
 	    [POUND_GIVEN_REPLICATES] = given->joined,
+	    [POUND_GIVEN_POOLED] = given->pooled,
 	    [POUND_GIVEN_FACTORIAL] = given->replicates > 0,
 	};
 	for (int k = 0; k < POUND_GIVEN_N_SAMPLES_NOTES; k++)
@@ -365,7 +372,9 @@ static void others_fill(const struct pound_given *given, const struct pound_poly
 		for (int j = i + 1; j < d; j++, indices->n_second++)
 			indices->second[indices->n_second] = (struct pound_set_index){
 			    1u << i | 1u << j, widened(p->value[2 * d + indices->n_second], indices->explained)};
-	indices->notes |= p && !fits ? 1u << POUND_GIVEN_UNEXPLAINED : 0u;
+	if (p && !fits)
+		indices->notes |= 1u << POUND_GIVEN_UNEXPLAINED | (unsigned)!given->noise_known
+		                                                      << POUND_GIVEN_NOISE_LIMITS;
 }
 
 /* Conditional means: of the polynomial plus of its residual. */
@@ -419,6 +428,14 @@ static bool few_decide(const struct space *s, int n)
 	return squares * squares < fmin(ROWS_BEHIND, n / KURTOSIS_MOST) * fourths;
 }
 
+static bool positive(const double *y, int n)
+{
+	for (int i = 0; i < n; i++)
+		if (!(y[i] > 0.0))
+			return false;
+	return true;
+}
+
 /* The indices of an output that the samples can estimate.
  *
  * Given    given      -
@@ -466,7 +483,9 @@ void pound_given_estimate(const struct pound_given *given, const struct pound_gi
 	if (!by_factorial)
 		others_fill(given, p, indices);
 	if (!factorial) {
-		indices->notes |= few_decide(&s, given->n_rows) ? 1u << POUND_GIVEN_FEW_DECIDE : 0u;
+		if (few_decide(&s, given->n_rows))
+			indices->notes |= 1u << POUND_GIVEN_FEW_DECIDE | (unsigned)positive(output->y, given->n_rows)
+			                                                     << POUND_GIVEN_LOGARITHM;
 		first_fill(&rows, &s, p, neighbors, indices);
 	} else if (!by_factorial)
 		pound_factorial_indices(given, output, s.rest, indices);

@@ -8,9 +8,11 @@
  *
  *   E[D_u] = closed variance of u + t (L_u - 1) / C
  *
+ * If all variance is noise, C D_all / (C - 1) over t has the F distribution with C - 1 and f degrees of freedom, f those of t.
+ *
  * The means are over all combinations, not over drawn samples: without noise the indices are exact.  Every index is a sum of
  * closed variances over the variance of all inputs; its interval is by its derivatives with respect to the means of the
- * combinations (delta method), and by the error of t.
+ * combinations (delta method), by the squares of their noise, and by the error of t.
  *
  * With one row for each combination t is not known.  S1 is then a share of the variance with the noise; interactions of the highest
  * order (three inputs or more; two, if there are only two) take the place of the noise, and the interval includes S1 without this
@@ -18,10 +20,14 @@
 #include "engine/indices/given_factorial.h"
 
 #include <float.h>
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
 #include "engine/indices/indices.h"
+
+// level of the test whether all is noise: a normal deviate of 2, one-sided
+static const double NOISE_LEVEL = 0.025;
 
 struct factorial {
 	const struct pound_given *given;
@@ -107,8 +113,12 @@ static struct pound_estimate index_of(const struct factorial *f, const struct te
 		const double derivative = 2.0 * (f->derivative[c] - value * f->mean[c]) / (f->cells * f->variance);
 		square += derivative * derivative * f->noise[c];
 	}
-	const double of_noise = share * f->t / f->variance;
+	const double noise = f->t / f->cells / f->variance,
+	             of_noise = (levels - value * (f->cells - 1.0)) * noise,
+	             squares = (1.0 - value) * (1.0 - value) * levels + value * value * (f->cells - 1.0 - levels);
 	square += f->freedom > 0.0 ? of_noise * of_noise * 2.0 / f->freedom : 0.0;
+	// the derivatives are zero at an effect of zero, but the square of its noise is not
+	square += 2.0 * squares * noise * noise;
 	const double half = POUND_NORMAL_95 * sqrt(square);
 	*uncorrected = part / f->variance;
 	return (struct pound_estimate){value, value - half, value + half};
@@ -134,6 +144,13 @@ static void means_fill(struct factorial *f, const struct pound_given_output *out
 	for (int c = 0; c < f->cells; c++)
 		f->t += f->noise[c] / f->cells;
 	f->freedom = (double)f->cells * (r > 1 ? r - 1 : 1);
+}
+
+/* Whether the variance of the means may be that of their noise alone, by an F test. */
+static bool noise_alone(const struct factorial *f, double all)
+{
+	const double between = all * f->cells / (f->cells - 1.0);
+	return f->t > 0.0 && gsl_cdf_fdist_Q(between / f->t, f->cells - 1.0, f->freedom) > NOISE_LEVEL;
 }
 
 /* Takes the mean square of the interactions of the highest order as the noise. */
@@ -191,7 +208,7 @@ static void others_fill(const struct factorial *f, struct pound_given_indices *i
  * Given    given      replicates > 0
  *          output     -
  * Returns  indices    noise_share, first; total and second if the noise is known
- *          value      whether the variance of the output is larger than that of its noise
+ *          value      whether the variance of the means is larger than that of their noise alone would be
  * Memory   scratch    (pound_factorial_scratch)
  *
  * Valid    The distribution of the inputs is the design's: its levels, equally likely.  Normal noise of each row for the intervals
@@ -215,8 +232,7 @@ bool pound_factorial_indices(const struct pound_given *given, const struct pound
 		all += f.mean[c] * f.mean[c] / cells;
 	f.variance = all - f.t * (cells - 1.0) / cells;
 	indices->noise_share = known ? f.t * (cells - 1.0) / cells / all : NAN;
-	// twice the standard error of the difference
-	if (!(f.variance > 2.0 * all * sqrt(2.0 / cells) * (f.t > 0.0)))
+	if (noise_alone(&f, all))
 		return false;
 	if (!known)
 		interactions_take(&f);

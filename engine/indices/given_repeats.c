@@ -74,12 +74,21 @@ int pound_given_join(int n_rows, int n_inputs, const double *x, int *table, int 
 		const int values = distinct_number(&(struct columns){n_rows, n_inputs, j, 1, x}, table, sample);
 		most = values > most ? values : most;
 	}
-	const int n = distinct_number(&(struct columns){n_rows, n_inputs, 0, n_inputs, x}, table, sample);
+	const int n = pound_given_points(n_rows, n_inputs, x, table, sample);
 	if (n < n_rows && n_inputs > 1 && 2 * most > n)
 		return n;
 	for (int i = 0; i < n_rows; i++)
 		sample[i] = i;
 	return n_rows;
+}
+
+/* Numbers the rows by the values of all inputs, in the order of appearance.
+ *
+ * Test     unit_given_table: samples_at_few_points_have_the_noise_of_their_spread
+ */
+int pound_given_points(int n_rows, int n_inputs, const double *x, int *table, int *point)
+{
+	return distinct_number(&(struct columns){n_rows, n_inputs, 0, n_inputs, x}, table, point);
 }
 
 /* ---- distributions ---- */

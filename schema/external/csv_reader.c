@@ -31,6 +31,13 @@ void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *
 	va_end(arguments);
 }
 
+void csv_length_check(struct csv *csv, int n, int expected)
+{
+	if (n != expected)
+		csv_fault_note(&csv->length, csv, "must have %d cell%s, as the header, got %d", expected,
+		               expected == 1 ? "" : "s", n);
+}
+
 /* Adds a problem for all lines with a fault: "line 7, y: ...", or "lines 7, 9, 12 and 30 more, y: ... (line 7)". */
 void csv_fault_report(const struct csv_fault *fault, const char *column, struct problems *problems)
 {

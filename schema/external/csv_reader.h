@@ -51,6 +51,8 @@ void csv_name_check(const struct csv *csv, int c, int same);
 /* Notes a fault of the current line, to be reported once for all lines. */
 void csv_fault_note(struct csv_fault *fault, const struct csv *csv, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* Notes a line whose number of cells is not the header's. */
+void csv_length_check(struct csv *csv, int n, int expected);
 void csv_fault_report(const struct csv_fault *fault, const char *column, struct problems *problems);
 
 #endif

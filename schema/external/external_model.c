@@ -319,8 +319,7 @@ static void line_read(const struct outputs *outputs, struct csv *csv, struct lin
 			cell_take(outputs, csv, line, n);
 		n++;
 	} while (!csv->ended);
-	if (n != outputs->n_columns)
-		csv_fault_note(&csv->length, csv, "has %d cells, the header has %d", n, outputs->n_columns);
+	csv_length_check(csv, n, outputs->n_columns);
 	line_assign(outputs, line);
 }
 

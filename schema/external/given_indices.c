@@ -34,11 +34,14 @@ struct samples {
 	struct column *columns;         /* (outputs->n_columns) */
 	char **names;                   /* of the outputs  (n_outputs) */
 	int n_outputs, n_rows, missing; /* n_rows: complete lines */
+	int n_points;                   /* different inputs */
 	bool noisy;                     /* outputs have variances or replicates */
 	bool repeated;                  /* every sample has two lines or more */
 	int *row;                       /* line of each complete row in the tables  (n_rows) */
 	int *sample, *count;            /* sample of each row, rows of each sample  (n_rows) each */
+	int *point, *repeats;           /* point of each sample, samples of each point  (n_rows) each */
 	double *x, *y, *noise;          /* y, noise: one output  (n_rows) each */
+	double *mean;                   /* of the output at each point  (n_rows) */
 	double *values, *scratch;
 	int *cell, *table;
 	size_t *order;
@@ -49,9 +52,9 @@ static void samples_free(struct samples *s)
 {
 	for (int o = 0; o < s->n_outputs; o++)
 		free(s->names[o]);
-	void *const memory[] = {s->columns, s->names, s->row,   s->sample,  s->count,
-	                        s->x,       s->y,     s->noise, s->values,  s->scratch,
-	                        s->cell,    s->table, s->order, s->indices, s->given.inputs};
+	void *const memory[] = {s->columns, s->names,   s->row,          s->sample,  s->count,   s->x,
+	                        s->y,       s->noise,   s->values,       s->scratch, s->cell,    s->table,
+	                        s->order,   s->indices, s->given.inputs, s->point,   s->repeats, s->mean};
 	for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
 		free(memory[k]);
 }
@@ -192,7 +195,7 @@ static bool column_sorted(const struct samples *s, const struct given_table *tab
 }
 
 /* Joins replicates, and sorts out what is known of the samples. */
-static void samples_join(const struct given_table *x, struct samples *s, struct problems *problems)
+static void samples_join(const struct given_table *x, struct samples *s, struct problems problems[2])
 {
 	const int n = s->n_rows, d = x->n_columns;
 	s->given.n_rows = pound_given_join(n, d, s->x, s->table, s->sample);
@@ -210,18 +213,34 @@ static void samples_join(const struct given_table *x, struct samples *s, struct 
 	for (int c = 0; c < s->outputs->n_columns; c++)
 		s->given.sorted |= column_sorted(s, s->outputs, c);
 	if (n < POUND_GIVEN_ROWS_MIN)
-		problems_add(
-		    problems, "",
-		    "%d samples are complete, expected at least %d; with fewer runs use a study: `pound design'", n,
-		    POUND_GIVEN_ROWS_MIN);
+		problems_add(&problems[GIVEN_OUTPUTS], "",
+		             "%d samples are complete, expected at least %d: new runs are needed, of more samples or "
+		             "of the rows of `pound design'",
+		             n, POUND_GIVEN_ROWS_MIN);
 	else if (s->given.n_rows < POUND_GIVEN_ROWS_MIN)
-		problems_add(problems, "", "the %d complete lines have %d different inputs, expected at least %d", n,
-		             s->given.n_rows, POUND_GIVEN_ROWS_MIN);
+		problems_add(&problems[GIVEN_INPUTS], "",
+		             "the %d complete lines are replicates of %d points, expected at least %d points: new "
+		             "runs at other points are needed",
+		             n, s->given.n_rows, POUND_GIVEN_ROWS_MIN);
+}
+
+/* Finds the points; samples that repeat all of them, not by design, have the noise of the spread at their points.  One input
+ * alone has no noise to be separated: what it does not explain is the index of the others. */
+static void points_find(struct samples *s)
+{
+	const int n = s->given.n_rows;
+	s->n_points = pound_given_points(n, s->given.n_inputs, s->x, s->table, s->point);
+	for (int i = 0; i < n; i++)
+		s->repeats[s->point[i]]++;
+	// two samples for each point on average
+	s->given.pooled =
+	    !s->given.noise_known && s->given.replicates == 0 && s->given.n_inputs > 1 && n >= 2 * s->n_points;
+	s->given.noise_known |= s->given.pooled;
 }
 
 /* Takes the complete samples; adds a problem for every constant input. */
 static void samples_take(const struct given_table *x, const struct given_table *y, struct samples *s,
-                         struct problems *problems)
+                         struct problems problems[2])
 {
 	const int d = x->n_columns;
 	int n = 0;
@@ -240,7 +259,7 @@ static void samples_take(const struct given_table *x, const struct given_table *
 		for (int i = 1; i < n; i++)
 			varies |= s->x[(size_t)i * d + j] != s->x[j];
 		if (!varies)
-			problems_add(problems, x->names[j],
+			problems_add(&problems[GIVEN_INPUTS], x->names[j],
 			             "has the same value in every complete sample; leave this input out");
 		s->given.inputs[j] = (struct pound_input){.name = x->names[j]};
 	}
@@ -256,6 +275,9 @@ static bool samples_init(struct samples *s, const struct given_table *x, const s
 	s->row = calloc(n + 1, sizeof *s->row);
 	s->sample = calloc(n + 1, sizeof *s->sample);
 	s->count = calloc(n + 1, sizeof *s->count);
+	s->point = calloc(n + 1, sizeof *s->point);
+	s->repeats = calloc(n + 1, sizeof *s->repeats);
+	s->mean = calloc(n + 1, sizeof *s->mean);
 	s->cell = calloc(n + 1, sizeof *s->cell);
 	s->table = calloc((size_t)pound_given_join_slots((int)n), sizeof *s->table);
 	s->x = calloc(n * d + 1, sizeof *s->x);
@@ -266,8 +288,9 @@ static bool samples_init(struct samples *s, const struct given_table *x, const s
 	s->scratch = calloc(pound_given_scratch((int)n, (int)d), sizeof *s->scratch);
 	s->indices = calloc(1, sizeof *s->indices);
 	s->given.inputs = calloc(d, sizeof *s->given.inputs);
-	return s->columns && s->names && s->row && s->sample && s->count && s->cell && s->table && s->x && s->y &&
-	       s->noise && s->values && s->order && s->scratch && s->indices && s->given.inputs;
+	return s->columns && s->names && s->row && s->sample && s->count && s->point && s->repeats && s->mean &&
+	       s->cell && s->table && s->x && s->y && s->noise && s->values && s->order && s->scratch &&
+	       s->indices && s->given.inputs;
 }
 
 /* ---- one output ---- */
@@ -294,6 +317,22 @@ static double value_of(const struct samples *s, int output, int row, double *var
 	return sum / n;
 }
 
+/* The noise of each sample: the variance at equal inputs, pooled over the points. */
+static void noise_pool(struct samples *s)
+{
+	const int n = s->given.n_rows;
+	double squares = 0.0;
+	memset(s->mean, 0, sizeof *s->mean * (size_t)s->n_points);
+	for (int i = 0; i < n; i++)
+		s->mean[s->point[i]] += (s->y[i] - s->y[0]) / s->repeats[s->point[i]];
+	for (int i = 0; i < n; i++) {
+		const double off = s->y[i] - s->y[0] - s->mean[s->point[i]];
+		squares += off * off;
+	}
+	for (int i = 0; i < n; i++)
+		s->noise[i] = squares / (n - s->n_points);
+}
+
 /* Fills in an output of every sample: its mean over the lines of the sample, and the variance of that mean. */
 static struct pound_given_output output_of(struct samples *s, int output)
 {
@@ -306,6 +345,8 @@ static struct pound_given_output output_of(struct samples *s, int output)
 		const double n = s->count[s->sample[k]], off = value_of(s, output, k, &variance) - s->y[s->sample[k]];
 		s->noise[s->sample[k]] += s->repeated ? off * off / (n - 1.0) / n : variance / n / n;
 	}
+	if (s->given.pooled)
+		noise_pool(s);
 	return (struct pound_given_output){s->y, s->given.noise_known ? s->noise : NULL};
 }
 
@@ -320,6 +361,7 @@ static void write_checks(struct writer *w, const struct samples *s, const struct
 {
 	writer_object(w, "given", WRITER_LINES);
 	writer_whole(w, "samples", s->given.n_rows);
+	writer_whole(w, "points", s->n_points);
 	writer_whole(w, "samples_missing", s->missing);
 	writer_bool(w, "factorial", s->given.replicates > 0);
 	writer_bool(w, "inputs_independent", !(checks->notes >> POUND_GIVEN_DEPENDENT & 1));
@@ -399,6 +441,7 @@ static char *result_of(struct samples *s, size_t *length)
 	struct writer w;
 	struct pound_given_checks checks;
 	pound_given_inputs(&s->given, s->values, s->cell, s->order);
+	points_find(s);
 	pound_given_check(&s->given, s->scratch, &checks);
 	writer_init(&w);
 	writer_object(&w, NULL, WRITER_LINES);
@@ -426,28 +469,31 @@ static char *result_of(struct samples *s, size_t *length)
 /* The indices of the outputs of given samples.
  *
  * Given    x, y       -         -       inputs and outputs, with one line per sample in the same order
- * Returns  value      (length)  -       JSON; NULL: failed, see problems->status; pointers are into the outputs
+ * Returns  value      (length)  -       JSON; NULL: failed, see problems
+ *          problems    (2)       -       of the inputs and of the outputs, enum given_role
  * Memory   allocates; the caller frees
  *
  * Test     unit_given_table: indices_of_two_tables_are_those_of_the_engine
  */
-char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,
+char *given_indices(const struct given_table *x, const struct given_table *y, struct problems problems[2],
                     size_t *length)
 {
 	struct samples s = {0};
+	struct problems *const of_inputs = &problems[GIVEN_INPUTS], *const of_outputs = &problems[GIVEN_OUTPUTS];
 	char *json = NULL;
-	problems_init(problems);
+	problems_init(of_inputs);
+	problems_init(of_outputs);
 	if (samples_init(&s, x, y)) {
 		if (x->n_rows != y->n_rows)
-			problems_add(problems, "", "has %d samples, but the inputs have %d", y->n_rows, x->n_rows);
-		outputs_find(x, y, &s, problems);
+			problems_add(of_outputs, "", "must have %d samples, as the inputs, got %d", x->n_rows, y->n_rows);
+		outputs_find(x, y, &s, of_outputs);
 		if (x->n_rows == y->n_rows)
 			samples_take(x, y, &s, problems);
-		if (problems->status == PROBLEMS_NONE)
+		if (of_inputs->status == PROBLEMS_NONE && of_outputs->status == PROBLEMS_NONE)
 			json = result_of(&s, length);
 	}
-	if (!json && problems->status == PROBLEMS_NONE)
-		problems->status = PROBLEMS_NOMEM;
+	if (!json && of_inputs->status == PROBLEMS_NONE && of_outputs->status == PROBLEMS_NONE)
+		of_outputs->status = PROBLEMS_NOMEM;
 	samples_free(&s);
 	return json;
 }

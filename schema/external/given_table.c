@@ -71,8 +71,7 @@ static void line_read(struct given_table *table, struct csv *csv, int row, struc
 		}
 		n++;
 	} while (!csv->ended);
-	if (n != table->n_columns)
-		csv_fault_note(&csv->length, csv, "has %d cells, the header has %d", n, table->n_columns);
+	csv_length_check(csv, n, table->n_columns);
 }
 
 /* Removes blank lines at the end. */

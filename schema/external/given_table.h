@@ -23,8 +23,8 @@ void given_table_free(struct given_table *table);
 /* The column with a name among the first n; -1: none. */
 int given_column(const struct given_table *table, int n, const char *name);
 
-/* The indices of the outputs, as JSON on the heap; NULL: failed, see problems->status. */
-char *given_indices(const struct given_table *x, const struct given_table *y, struct problems *problems,
+/* The indices of the outputs, as JSON on the heap; NULL: failed, see the problems of each table, enum given_role. */
+char *given_indices(const struct given_table *x, const struct given_table *y, struct problems problems[2],
                     size_t *length);
 
 #endif

@@ -16,10 +16,20 @@ static const struct part {
     {"ST", "ST_low", "ST_high", "total index ST", false},
 };
 
+static bool is_given(const struct plot *plot)
+{
+	return strcmp(plot_text(plot->result, "kind"), "given_data") == 0;
+}
+
 static const char *noise_name(const struct plot *plot)
 {
-	return strcmp(plot_text(plot->result, "kind"), "given_data") == 0 ? "noise of replicates"
-	                                                                  : "noise of signals";
+	return is_given(plot) ? "noise of replicates" : "noise of signals";
+}
+
+/* Whether an output has a row for its noise; given data without replicates have none. */
+static bool has_noise(const struct plot *plot, const cJSON *output)
+{
+	return !is_given(plot) || isfinite(plot_number(output, "noise_share"));
 }
 
 static bool drawn(const struct plot *plot, const struct part *part)
@@ -101,14 +111,15 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 	int n = cJSON_GetArraySize(inputs);
 	char title[PLOT_TEXT];
 	struct ticks ticks;
-	double names = draw_width(noise_name(plot), DRAW_TEXT_SIZE);
+	const bool noise = has_noise(plot, output);
+	double names = noise ? draw_width(noise_name(plot), DRAW_TEXT_SIZE) : 0;
 	cJSON_ArrayForEach(input, inputs) names =
 	    fmax(names, draw_width(plot_text(input, "name"), DRAW_TEXT_SIZE));
 	names = fmin(names, 0.38 * panel->width);
 	struct axis axis = axis_linear(range);
 	axis.start = panel->x + names + 10;
 	axis.end = panel->x + panel->width - 12;
-	double top = panel->y + 22, bottom = top + (n + 1) * ROW + 4;
+	double top = panel->y + 22, bottom = top + (n + noise) * ROW + 4;
 	axis_ticks_across(&axis, &ticks);
 	draw_text(&plot->d,
 	          &(struct label){.x = axis.start,
@@ -132,7 +143,8 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 		draw_input(plot, &axis, input, y);
 		y += ROW;
 	}
-	draw_noise(plot, &axis, output, names, y);
+	if (noise)
+		draw_noise(plot, &axis, output, names, y);
 }
 
 /* The range of the indices of some outputs, at least [0, 1]. */
@@ -221,14 +233,17 @@ static void say_largest(struct plot *plot, const cJSON *output)
 		if (isfinite(value) && (!largest || value > plot_number(largest, "ST")))
 			largest = input;
 	}
-	if (largest)
-		snprintf(plot->sentence, sizeof plot->sentence,
-		         "Largest total index of %.100s: input %.160s. The %s accounts for %s of the variance.",
-		         plot_output_name(output, name), value_text(largest, &PARTS[1], text), noise_name(plot),
-		         draw_number(plot_number(output, "noise_share"), number));
-	else
-		snprintf(plot->sentence, sizeof plot->sentence, "No index of %.100s has a value.",
+	if (!largest) {
+		snprintf(plot->sentence, sizeof plot->sentence, "No total index of %.100s has a value.",
 		         plot_output_name(output, name));
+		return;
+	}
+	int n = snprintf(plot->sentence, sizeof plot->sentence, "Largest total index of %.100s: input %.160s.",
+	                 plot_output_name(output, name), value_text(largest, &PARTS[1], text));
+	if (has_noise(plot, output))
+		snprintf(plot->sentence + n, sizeof plot->sentence - (size_t)n,
+		         " The %s accounts for %s of the variance.", noise_name(plot),
+		         draw_number(plot_number(output, "noise_share"), number));
 }
 
 void plot_indices(struct plot *plot)

@@ -489,9 +489,10 @@ static void every_fault_of_the_outputs_is_reported_with_its_line(void **state)
 	    // many lines with the same fault give one message
 	    {"y\n", "0x1\n", "1\n", "lines 2, 3, 4 and 20 more, y",
 	     "must be a decimal number, or empty or nan for a failed run, got \"0x1\" (line 2)"},
-	    {"y,z\n", "1,2,3\n", "1,2\n", "lines 2, 3, 4 and 20 more", "has 3 cells, the header has 2 (line 2)"},
-	    {"y\n", "1\n", "1,5\n", "line 25", "has 2 cells, the header has 1"},
-	    {"y,z\n", "1,2\n", "1\n", "line 25", "has 1 cells, the header has 2"},
+	    {"y,z\n", "1,2,3\n", "1,2\n", "lines 2, 3, 4 and 20 more",
+	     "must have 2 cells, as the header, got 3 (line 2)"},
+	    {"y\n", "1\n", "1,5\n", "line 25", "must have 1 cell, as the header, got 2"},
+	    {"y,z\n", "1,2\n", "1\n", "line 25", "must have 2 cells, as the header, got 1"},
 	    {"y,y.variance\n", "1,2\n", "1,-2\n", "line 25, y.variance", "must be at least 0, got -2"},
 	    {"y,y.variance\n", "1,2\n", "1,1e121\n", "line 25, y.variance", "must be at most 1e+120, got 1e121"},
 	    {"y\n", "1\n", "-1e200\n", "line 25, y", "must be at most 1e+60 in magnitude, got -1e200"},

@@ -44,7 +44,7 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 {
 	(void)state;
 	struct given_table x, y;
-	struct problems problems;
+	struct problems problems[2];
 	static double points[N * 2], values[4 * N], sums[N];
 	static size_t order[N];
 	static int cell[N];
@@ -67,7 +67,7 @@ static void indices_of_two_tables_are_those_of_the_engine(void **state)
 	for (int k = 0; k < 2; k++) {
 		// a table of outputs may contain the inputs again
 		read_all(&x, &y, one, k ? both : two);
-		char *json = given_indices(&x, &y, &problems, &n);
+		char *json = given_indices(&x, &y, problems, &n);
 		assert_non_null(json);
 		struct reading *result = reading_open(json, n);
 		assert_string_equal(reading_text(result, "/kind"), "given_data");
@@ -95,11 +95,11 @@ static void samples_without_a_number_are_left_out_and_counted(void **state)
 {
 	(void)state;
 	struct given_table x, y;
-	struct problems problems;
+	struct problems problems[2];
 	size_t n;
 	char *one = text_of("a,b", "ab", 3, 10), *two = text_of("y", "y", 8, 12), *few = text_of("y", "y", 0, 40);
 	read_all(&x, &y, one, two);
-	char *json = given_indices(&x, &y, &problems, &n);
+	char *json = given_indices(&x, &y, problems, &n);
 	assert_non_null(json);
 	struct reading *result = reading_open(json, n);
 	check_near(reading_number(result, "/given/samples"), N - 9, 0);
@@ -109,10 +109,10 @@ static void samples_without_a_number_are_left_out_and_counted(void **state)
 	given_table_free(&x);
 	given_table_free(&y);
 	read_all(&x, &y, one, few);
-	assert_null(given_indices(&x, &y, &problems, &n));
-	assert_string_equal(
-	    problems.list[0].detail,
-	    "60 samples are complete, expected at least 64; with fewer runs use a study: `pound design'");
+	assert_null(given_indices(&x, &y, problems, &n));
+	assert_string_equal(problems[GIVEN_OUTPUTS].list[0].detail,
+	                    "60 samples are complete, expected at least 64: new runs are needed, of more samples "
+	                    "or of the rows of `pound design'");
 	given_table_free(&x);
 	given_table_free(&y);
 	free(one);
@@ -133,7 +133,7 @@ static void what_is_wrong_with_a_table_is_reported_completely(void **state)
 	    {"a,3\n", "line 1", "must be the name of a column"},
 	    {"a,b\n1,2\n1,x\n", "line 3, b", "must be a decimal number"},
 	    {"a,b\n1,2\n1,1e70\n", "line 3, b", "must be at most 1e+60 in magnitude"},
-	    {"a,b\n1,inf\n2\n", "line 3", "has 1 cells, the header has 2"},
+	    {"a,b\n1,inf\n2\n", "line 3", "must have 2 cells, as the header, got 1"},
 	    {"row,sample\n1,2\n", "line 1", "has no column of an input"},
 	    {"a,b,c,d,e,f,g,h,i,j,k,l,m,n,o,p,q,r,s,t,u,v,w,x,y,z,aa,bb,cc,dd,ee,ff,gg\n", "line 1",
 	     "has 33 inputs, expected at most 32"},
@@ -159,23 +159,25 @@ static void tables_that_do_not_go_together_are_refused(void **state)
 {
 	(void)state;
 	struct given_table x, y;
-	struct problems problems;
+	struct problems problems[2];
 	size_t n;
 	char *one = text_of("a,b", "ab", 0, 0), *two = text_of("y", "y", 0, 0),
 	     *same = text_of("a,b", "a1", 0, 0), *other = text_of("b,y", "ay", 0, 0);
 	const struct {
 		const char *x, *y, *words;
+		enum given_role role;
 	} bad[] = {
-	    {one, "y\n1\n2\n", "has 2 samples, but the inputs have 100"},
-	    {same, two, "has the same value in every complete sample; leave this input out"},
-	    {one, one, "has no column of an output"},
-	    {one, other, "is 1, but the inputs have 37; check the order of the lines"},
+	    {one, "y\n1\n2\n", "must have 100 samples, as the inputs, got 2", GIVEN_OUTPUTS},
+	    {same, two, "has the same value in every complete sample; leave this input out", GIVEN_INPUTS},
+	    {one, one, "has no column of an output", GIVEN_OUTPUTS},
+	    {one, other, "is 1, but the inputs have 37; check the order of the lines", GIVEN_OUTPUTS},
 	};
 	for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
 		read_all(&x, &y, bad[k].x, bad[k].y);
-		assert_null(given_indices(&x, &y, &problems, &n));
-		assert_int_equal(problems.status, PROBLEMS_INVALID);
-		assert_non_null(strstr(problems.list[0].detail, bad[k].words));
+		assert_null(given_indices(&x, &y, problems, &n));
+		assert_int_equal(problems[bad[k].role].status, PROBLEMS_INVALID);
+		assert_int_equal(problems[1 - bad[k].role].status, PROBLEMS_NONE);
+		assert_non_null(strstr(problems[bad[k].role].list[0].detail, bad[k].words));
 		given_table_free(&x);
 		given_table_free(&y);
 	}
@@ -213,17 +215,17 @@ struct tables {
 	size_t n_x, n_y;
 };
 
-static void tables_open(struct tables *t, const char *outputs)
+static void tables_open(struct tables *t, const char *outputs, const char *inputs)
 {
 	*t = (struct tables){0};
 	t->inputs = open_memstream(&t->x, &t->n_x);
 	t->outputs = open_memstream(&t->y, &t->n_y);
-	fputs("a,b\n", t->inputs);
+	fprintf(t->inputs, "%s\n", inputs);
 	fprintf(t->outputs, "%s\n", outputs);
 }
 
 /* The result of both tables; NULL: refused. */
-static struct reading *tables_close(struct tables *t, struct problems *problems)
+static struct reading *tables_close(struct tables *t, struct problems problems[2])
 {
 	struct given_table x, y;
 	size_t n;
@@ -268,8 +270,8 @@ static void variances_and_replicates_are_no_outputs(void **state)
 	double first[3];
 	for (int k = 0; k < 3; k++) {
 		struct tables t;
-		struct problems problems;
-		tables_open(&t, headers[k]);
+		struct problems problems[2];
+		tables_open(&t, headers[k], "a,b");
 		for (int i = 0; i < ROWS; i++) {
 			const double a = point(i, 0), b = point(i, 1), y = a + b, off = 0.25 * (point(i + ROWS, 0) - 0.5);
 			for (int line = 0; line < (k == 2 ? 2 : 1); line++)
@@ -280,7 +282,7 @@ static void variances_and_replicates_are_no_outputs(void **state)
 			else
 				fprintf(t.outputs, "%.17g%s%.17g\n", y + off, k == 1 ? "," : "\n", y - off);
 		}
-		struct reading *result = tables_close(&t, &problems);
+		struct reading *result = tables_close(&t, problems);
 		assert_non_null(result);
 		assert_int_equal(reading_count(result, "/cells/0/outputs"), 1);
 		assert_string_equal(reading_text(result, "/cells/0/outputs/0/name"), "y");
@@ -314,16 +316,17 @@ static void columns_that_do_not_make_an_output_are_refused(void **state)
 	};
 	for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
 		struct tables t;
-		struct problems problems;
-		tables_open(&t, bad[k].header);
+		struct problems problems[2];
+		tables_open(&t, bad[k].header, "a,b");
 		for (int i = 0; i < N; i++) {
 			fprintf(t.inputs, "%.17g,%.17g\n", point(i, 0), point(i, 1));
 			fprintf(t.outputs, "%s\n", bad[k].cells);
 		}
-		assert_null(tables_close(&t, &problems));
-		check_report("%s: %s", problems.list[0].pointer, problems.list[0].detail);
-		assert_string_equal(problems.list[0].pointer, bad[k].pointer);
-		assert_non_null(strstr(problems.list[0].detail, bad[k].words));
+		assert_null(tables_close(&t, problems));
+		check_report("%s: %s", problems[GIVEN_OUTPUTS].list[0].pointer,
+		             problems[GIVEN_OUTPUTS].list[0].detail);
+		assert_string_equal(problems[GIVEN_OUTPUTS].list[0].pointer, bad[k].pointer);
+		assert_non_null(strstr(problems[GIVEN_OUTPUTS].list[0].detail, bad[k].words));
 	}
 }
 
@@ -334,34 +337,79 @@ static void a_sorted_table_is_no_markov_chain(void **state)
 	enum { ROWS = 400 };
 	for (int sorted = 0; sorted < 2; sorted++) {
 		struct tables t;
-		struct problems problems;
-		tables_open(&t, "y");
+		struct problems problems[2];
+		tables_open(&t, "y", "a,b");
 		for (int i = 0; i < ROWS; i++) {
 			// a and y ascend, but for a shuffle of neighbors in a; without the sorted output it looks like a chain
 			const double y = sorted ? i : point(i, 0), a = i + 30 * point(i, 1);
 			fprintf(t.inputs, "%.17g,%.17g\n", a, point(i, 0));
 			fprintf(t.outputs, "%.17g\n", y);
 		}
-		struct reading *result = tables_close(&t, &problems);
+		struct reading *result = tables_close(&t, problems);
 		assert_non_null(result);
 		assert_true(notes_have(result, "successive samples are correlated") == !sorted);
 		reading_close(result);
 	}
 }
 
+/* x1 + x2 x3 of independent bits with noise, in lines drawn at random: 0.25 by x1, and 0.1875 by x2 x3, a third each for x2, x3 and
+ * both; the variance of the noise is 0.25. */
+static void samples_at_few_points_have_the_noise_of_their_spread(void **state)
+{
+	(void)state;
+	enum { SEEDS = 40, ROWS = 600 };
+	static const double first[] = {4 / 7.0, 1 / 7.0, 1 / 7.0}, total[] = {4 / 7.0, 2 / 7.0, 2 / 7.0};
+	int missed = 0;
+	double share = 0.0;
+	for (int seed = 0; seed < SEEDS; seed++) {
+		struct tables t;
+		struct problems problems[2];
+		tables_open(&t, "y", "x1,x2,x3");
+		for (int i = seed * ROWS; i < (seed + 1) * ROWS; i++) {
+			const int a = point(i, 0) < 0.5, b = point(i, 1) < 0.5, c = point(i + SEEDS * ROWS, 0) < 0.5;
+			const double noise = sqrt(12) * (point(i + SEEDS * ROWS, 1) - 0.5);
+			fprintf(t.inputs, "%d,%d,%d\n", a, b, c);
+			fprintf(t.outputs, "%.17g\n", a + b * c + 0.5 * noise);
+		}
+		struct reading *result = tables_close(&t, problems);
+		assert_non_null(result);
+		check_near(reading_number(result, "/given/samples"), ROWS, 0);
+		check_near(reading_number(result, "/given/points"), 8, 0);
+		assert_false(notes_have(result, "cannot separate the noise"));
+		assert_true(notes_have(result, "samples with the same inputs is its noise"));
+		share += reading_number(result, "/cells/0/outputs/0/noise_share") / SEEDS;
+		for (int j = 0; j < 3; j++) {
+			static const char *const names[] = {"S1", "ST"};
+			for (int k = 0; k < 2; k++) {
+				const char *at = "/cells/0/outputs/0/inputs";
+				const double exact = k == 0 ? first[j] : total[j],
+				             low = reading_number(result, "%s/%d/%s_low", at, j, names[k]),
+				             high = reading_number(result, "%s/%d/%s_high", at, j, names[k]);
+				assert_true(isfinite(low) && isfinite(high));
+				missed += !(low <= exact && exact <= high);
+			}
+		}
+		reading_close(result);
+	}
+	check_report("%d of %d intervals missed", missed, SEEDS * 6);
+	assert_true(missed <= 0.08 * SEEDS * 6);
+	check_near(share, 0.25 / (0.25 + 0.4375), 0.01);
+}
+
 static void few_different_inputs_are_refused(void **state)
 {
 	(void)state;
 	struct tables t;
-	struct problems problems;
-	tables_open(&t, "y");
+	struct problems problems[2];
+	tables_open(&t, "y", "a,b");
 	for (int i = 0; i < N; i++) {
 		fprintf(t.inputs, "%.17g,%.17g\n", point(i / 2, 0), point(i / 2, 1));
 		fprintf(t.outputs, "%d\n", i);
 	}
-	assert_null(tables_close(&t, &problems));
-	assert_string_equal(problems.list[0].detail,
-	                    "the 100 complete lines have 50 different inputs, expected at least 64");
+	assert_null(tables_close(&t, problems));
+	assert_string_equal(problems[GIVEN_INPUTS].list[0].detail,
+	                    "the 100 complete lines are replicates of 50 points, expected at least 64 points: "
+	                    "new runs at other points are needed");
 }
 
 CHECK_MAIN(cmocka_unit_test(indices_of_two_tables_are_those_of_the_engine),
@@ -372,4 +420,5 @@ CHECK_MAIN(cmocka_unit_test(indices_of_two_tables_are_those_of_the_engine),
            cmocka_unit_test(variances_and_replicates_are_no_outputs),
            cmocka_unit_test(columns_that_do_not_make_an_output_are_refused),
            cmocka_unit_test(a_sorted_table_is_no_markov_chain),
+           cmocka_unit_test(samples_at_few_points_have_the_noise_of_their_spread),
            cmocka_unit_test(few_different_inputs_are_refused))

@@ -128,6 +128,13 @@ static void what_no_polynomial_explains_has_no_total_indices(void **state)
 	given_check(&s);
 	given_estimate(&s, &indices);
 	assert_true(given_says(indices.notes, POUND_GIVEN_UNEXPLAINED));
+	assert_true(given_says(indices.notes, POUND_GIVEN_NOISE_LIMITS));
+	// without noise it is not the cause
+	memset(s.noise, 0, sizeof *s.noise * N);
+	s.given.noise_known = true;
+	given_estimate(&s, &indices);
+	assert_true(given_says(indices.notes, POUND_GIVEN_UNEXPLAINED));
+	assert_false(given_says(indices.notes, POUND_GIVEN_NOISE_LIMITS));
 	assert_int_equal(indices.n_second, 0);
 	for (int j = 0; j < D; j++) {
 		assert_true(isnan(indices.total[j].value));
@@ -184,6 +191,8 @@ static void independent_samples_pass_and_others_are_named(void **state)
 	assert_int_equal(s.checks.pair[0], 1);
 	assert_int_equal(s.checks.pair[1], 2);
 	assert_true(s.checks.correlation > 0.7);
+	assert_false(given_says(s.checks.notes, POUND_GIVEN_NOT_MONOTONIC) ||
+	             given_says(s.checks.notes, POUND_GIVEN_COLLINEAR));
 	given_estimate(&s, &indices);
 	assert_true(isnan(indices.total[0].value) && isnan(indices.explained) && indices.n_second == 0);
 	assert_true(isfinite(indices.first[1].value));
@@ -197,6 +206,23 @@ static void independent_samples_pass_and_others_are_named(void **state)
 	}
 	given_check(&s);
 	assert_true(given_says(s.checks.notes, POUND_GIVEN_DEPENDENT));
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_NOT_MONOTONIC));
+	assert_true(fabs(s.checks.correlation) < 0.1);
+	given_free(&s);
+	// the first input is on a parabola over the second; the third is a decreasing function of the second
+	given_draw(&s, N, D, 7);
+	for (int i = 0; i < N; i++) {
+		double *x = s.x + (size_t)i * D;
+		x[0] = (x[1] - 0.5) * (x[1] - 0.5);
+		x[2] = -x[1] * x[1];
+	}
+	given_check(&s);
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_DEPENDENT));
+	assert_true(given_says(s.checks.notes, POUND_GIVEN_COLLINEAR));
+	assert_false(given_says(s.checks.notes, POUND_GIVEN_NOT_MONOTONIC));
+	assert_int_equal(s.checks.pair[0], 1);
+	assert_int_equal(s.checks.pair[1], 2);
+	check_near(s.checks.correlation, -1.0, 1e-9);
 	given_free(&s);
 	// a lattice: equal distances in one input are equal distances in the other
 	given_draw(&s, N, 2, 8);

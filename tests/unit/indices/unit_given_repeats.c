@@ -274,6 +274,84 @@ static void one_row_for_each_combination_has_first_order_indices(void **state)
 	assert_true(missed <= 0.08 * SEEDS * 2);
 }
 
+/* Fills in a factorial design of d inputs of -1 and 1 with r rows for each point: effect (x1 + x1 x2 / 2) + noise. */
+static void two_levels_fill(struct given_samples *s, int d, double effect, double noise)
+{
+	for (int i = 0; i < s->given.n_rows; i++) {
+		for (int j = 0; j < d; j++)
+			s->x[d * i + j] = i >> j & 1 ? 1.0 : -1.0;
+		const double *x = s->x + (size_t)d * i;
+		s->y[i] = effect * (x[0] + 0.5 * x[0] * x[1]) + noise * given_normal();
+	}
+}
+
+/* Designs of few points: only the noise of a mean matters, not how many points there are.  x1 is 0.8 of the variance of the means,
+ * x1 x2 the other 0.2. */
+static void replicates_of_few_points_have_indices(void **state)
+{
+	(void)state;
+	enum { SEEDS = 200 };
+	static const struct {
+		int d, r;
+		double noise;
+	} designs[] = {{2, 20, 0.5}, {3, 10, 0.5}, {3, 40, 0.5}, {3, 10, 0.0},
+	               {2, 20, 0.0}, {3, 10, 1.5}, {6, 2, 0.5}};
+	for (size_t k = 0; k < sizeof designs / sizeof designs[0]; k++) {
+		const int d = designs[k].d;
+		int refused = 0, missed = 0, n = 0;
+		for (int seed = 0; seed < SEEDS; seed++) {
+			struct given_samples s;
+			static struct pound_given_indices indices;
+			given_draw(&s, designs[k].r << d, d, 4000 + (uint64_t)seed);
+			two_levels_fill(&s, d, 1.0, designs[k].noise);
+			given_check(&s);
+			assert_int_equal(s.given.replicates, designs[k].r);
+			given_estimate(&s, &indices);
+			refused += given_says(indices.notes, POUND_GIVEN_ALL_NOISE);
+			for (int j = 0; j < d && indices.notes == 0; j++, n += 2) {
+				const double first = j == 0 ? 0.8 : 0.0, total = j == 0 ? 1.0 : j == 1 ? 0.2 : 0.0;
+				if (designs[k].noise == 0.0) {
+					check_near(indices.first[j].value, first, 1e-12);
+					check_near(indices.total[j].high, total, 1e-12);
+					continue;
+				}
+				given_check_holds(indices.first[j], first, "S1", &missed);
+				given_check_holds(indices.total[j], total, "ST", &missed);
+			}
+			given_free(&s);
+		}
+		check_report("2^%d x %d, noise %g: %d of %d intervals missed", d, designs[k].r, designs[k].noise,
+		             missed, n);
+		assert_int_equal(refused, 0);
+		assert_true(missed <= 0.08 * n);
+	}
+}
+
+/* Noise alone is refused, but for the 2.5 % of sets that a test at this level takes for an effect. */
+static void replicates_of_few_points_that_are_noise_have_no_indices(void **state)
+{
+	(void)state;
+	enum { SEEDS = 400 };
+	static const int designs[][2] = {{2, 20}, {3, 10}, {3, 40}, {6, 2}};
+	for (size_t k = 0; k < sizeof designs / sizeof designs[0]; k++) {
+		const int d = designs[k][0];
+		int taken = 0;
+		for (int seed = 0; seed < SEEDS; seed++) {
+			struct given_samples s;
+			static struct pound_given_indices indices;
+			given_draw(&s, designs[k][1] << d, d, 5000 + (uint64_t)seed);
+			two_levels_fill(&s, d, 0.0, 1.0);
+			given_check(&s);
+			given_estimate(&s, &indices);
+			taken += !given_says(indices.notes, POUND_GIVEN_ALL_NOISE);
+			given_free(&s);
+		}
+		check_report("2^%d x %d: noise taken for an effect in %d of %d sets", d, designs[k][1], taken, SEEDS);
+		// 10 expected, standard deviation 3
+		assert_true(taken >= 1 && taken <= 20);
+	}
+}
+
 /* ---- rows in any order ---- */
 
 static void lines_in_another_order_have_the_same_notes_and_intervals_as_wide(void **state)
@@ -378,9 +456,16 @@ static void heavy_tails_are_noted(void **state)
 		for (int j = 0; j < 3; j++)
 			given_check_holds(indices.first[j], (exp(sd[j] * sd[j]) - 1.0) / all, "S1", &misses);
 		const bool note = given_says(indices.notes, POUND_GIVEN_FEW_DECIDE);
+		assert_true(given_says(indices.notes, POUND_GIVEN_LOGARITHM) == note);
 		missed += misses;
 		noted += note;
 		missed_silent += note ? 0 : misses;
+		// the same with a value of zero has no logarithm
+		const double one = s.y[0];
+		s.y[0] = 0.0;
+		given_estimate(&s, &indices);
+		assert_false(given_says(indices.notes, POUND_GIVEN_LOGARITHM));
+		s.y[0] = one;
 		// a normal output of the same inputs has no note
 		for (int i = 0; i < N; i++)
 			s.y[i] = log(s.y[i]);
@@ -401,6 +486,8 @@ CHECK_MAIN(cmocka_unit_test(rows_with_the_same_inputs_are_replicates_unless_all_
            cmocka_unit_test(a_factorial_design_has_the_indices_of_its_levels),
            cmocka_unit_test(noise_of_a_factorial_design_is_removed),
            cmocka_unit_test(one_row_for_each_combination_has_first_order_indices),
+           cmocka_unit_test(replicates_of_few_points_have_indices),
+           cmocka_unit_test(replicates_of_few_points_that_are_noise_have_no_indices),
            cmocka_unit_test(lines_in_another_order_have_the_same_notes_and_intervals_as_wide),
            cmocka_unit_test(ties_do_not_take_the_order_of_the_lines),
            cmocka_unit_test(independent_markov_chains_are_not_called_dependent),
