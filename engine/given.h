@@ -77,7 +77,8 @@ struct pound_given_checks {
 };
 
 struct pound_given_indices {
-	double mean, variance;
+	double mean,
+	    variance; /* of the samples; of a factorial design with replicates: of the means of its combinations */
 	double noise_share; /* fraction of the variance due to the noise; NAN: not known */
 	double explained;   /* cross-validated R2 of the polynomial; NAN: none was fitted */
 	int degree, terms;  /* of the polynomial */

@@ -207,7 +207,7 @@ static void others_fill(const struct factorial *f, struct pound_given_indices *i
  *
  * Given    given      replicates > 0
  *          output     -
- * Returns  indices    noise_share, first; total and second if the noise is known
+ * Returns  indices    variance, noise_share, both of the means of the combinations; first; total and second if the noise is known
  *          value      whether the variance of the means is larger than that of their noise alone would be
  * Memory   scratch    (pound_factorial_scratch)
  *
@@ -231,6 +231,7 @@ bool pound_factorial_indices(const struct pound_given *given, const struct pound
 	for (int c = 0; c < cells; c++)
 		all += f.mean[c] * f.mean[c] / cells;
 	f.variance = all - f.t * (cells - 1.0) / cells;
+	indices->variance = all * cells / (cells - 1.0);
 	indices->noise_share = known ? f.t * (cells - 1.0) / cells / all : NAN;
 	if (noise_alone(&f, all))
 		return false;

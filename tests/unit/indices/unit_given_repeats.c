@@ -217,16 +217,22 @@ static void noise_of_a_factorial_design_is_removed(void **state)
 	enum { SEEDS = 100, R = 3 };
 	const double noise = 3.0;
 	int missed = 0;
-	double exact[9], mean[9] = {0};
+	double exact[9], mean[9] = {0},
+	                 variance[2] = {0}; // of the means of the combinations, without noise: exact, estimated
 	exact_indices(exact);
-	for (int seed = 0; seed < SEEDS; seed++) {
+	for (int seed = -1; seed < SEEDS; seed++) {
 		struct given_samples s;
 		static struct pound_given_indices indices;
-		given_draw(&s, CELLS * R, 3, 700 + (uint64_t)seed);
-		factorial_fill(&s, R, noise);
+		given_draw(&s, CELLS * R, 3, 700 + (uint64_t)(seed + 1));
+		factorial_fill(&s, R, seed < 0 ? 0.0 : noise);
 		given_check(&s);
 		assert_int_equal(s.checks.notes, 1u << POUND_GIVEN_FACTORIAL);
 		given_estimate(&s, &indices);
+		variance[seed >= 0] += indices.variance * (1.0 - indices.noise_share) / (seed < 0 ? 1 : SEEDS);
+		if (seed < 0) {
+			given_free(&s);
+			continue;
+		}
 		for (int k = 0; k < 9; k++) {
 			const struct pound_estimate e = k < 3   ? indices.first[k]
 			                                : k < 6 ? indices.total[k - 3]
@@ -238,6 +244,8 @@ static void noise_of_a_factorial_design_is_removed(void **state)
 	}
 	for (int k = 0; k < 9; k++)
 		check_near(mean[k], exact[k], 0.01);
+	// four standard errors: 2 sqrt(V t / CELLS / SEEDS) with t = V / 6, as the noise is a third of the variance of a run
+	check_near(variance[1], variance[0], variance[0] * 8.0 * sqrt(1.0 / 6 / CELLS / SEEDS));
 	check_report("%d of %d intervals missed", missed, SEEDS * 9);
 	assert_true(missed >= 0.01 * SEEDS * 9 && missed <= 0.08 * SEEDS * 9);
 }
