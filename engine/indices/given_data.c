@@ -29,7 +29,7 @@ enum {
 };
 
 // limits of the checks in standard errors: with hundreds (thousands) of normal deviates, 1 % of sample sets fail by chance
-static const double DEPENDENT = 4.0, ARRANGED = 5.0;
+static const double DEPENDENT = 4.0, ARRANGED = 5.0, PAIR_MOST = 2.0;
 static const double COLLINEAR = 0.99;      // rank correlation
 static const double EXPLAINED_LEAST = 0.9; // least R2 for ST to be estimated
 // coverage of S1 by the effective rows of the variance, n / kurtosis: engine/indices/statistics.md
@@ -175,13 +175,19 @@ static double lagged(const struct space *s, int n, int d, int j, int lag)
 }
 
 /* Whether neighbors in one input (the order) are correlated in input j.  Ranks of random samples have no correlation at any
- * lag; with dependent inputs the correlation is nearly the same at all small lags. */
+ * lag; with dependent inputs the correlation is nearly the same at all small lags.  An input with a rare value is not checked if a
+ * single pair of rows with it changes a correlation by more than PAIR_MOST standard errors. */
 static bool arranged(const struct space *s, int n, int d, int j)
 {
 	const double limit = ARRANGED * sqrt((1.0 + 1.0 / LAGS) / n);
-	double square = 0.0, further = 0.0;
-	for (int k = 0; k < n; k++)
-		square += rank_of(s, d, k, j) * rank_of(s, d, k, j);
+	double square = 0.0, further = 0.0, largest = 0.0;
+	for (int k = 0; k < n; k++) {
+		const double rank = rank_of(s, d, k, j);
+		square += rank * rank;
+		largest = fmax(largest, rank * rank);
+	}
+	if (largest * sqrt(n) > PAIR_MOST * square)
+		return false;
 	for (int lag = LAGS + 1; lag <= 2 * LAGS; lag++)
 		further += lagged(s, n, d, j, lag) / LAGS;
 	for (int lag = 1; lag <= LAGS; lag++)

@@ -252,6 +252,22 @@ static void a_constant_has_no_indices(void **state)
 	given_free(&s);
 }
 
+/* A rare value in a discrete input: two of its rows are near each other in another input by chance. */
+static void a_rare_value_is_no_arrangement(void **state)
+{
+	(void)state;
+	enum { SETS = 60, ROWS = 1000 };
+	for (int set = 0; set < SETS; set++) {
+		struct given_samples s;
+		given_draw(&s, ROWS, D, 4000 + (uint64_t)set);
+		for (int i = 0; i < ROWS; i++)
+			s.x[(size_t)i * D] = s.x[(size_t)i * D] < 0.005;
+		given_check(&s);
+		assert_false(given_says(s.checks.notes, POUND_GIVEN_ARRANGED));
+		given_free(&s);
+	}
+}
+
 static void a_shift_and_a_scale_change_nothing(void **state)
 {
 	(void)state;
@@ -281,4 +297,5 @@ CHECK_MAIN(cmocka_unit_test(a_polynomial_has_the_indices_of_its_coefficients),
            cmocka_unit_test(what_no_polynomial_explains_has_no_total_indices),
            cmocka_unit_test(an_input_of_few_values_is_discrete),
            cmocka_unit_test(independent_samples_pass_and_others_are_named),
-           cmocka_unit_test(a_constant_has_no_indices), cmocka_unit_test(a_shift_and_a_scale_change_nothing))
+           cmocka_unit_test(a_constant_has_no_indices), cmocka_unit_test(a_rare_value_is_no_arrangement),
+           cmocka_unit_test(a_shift_and_a_scale_change_nothing))
