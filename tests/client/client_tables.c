@@ -222,7 +222,7 @@ static void groups_are_in_the_summary_over_cells_and_places(void **state)
 	static const char study[] =
 	    "{\"kind\": \"sensitivity\", \"scene\": {\"buildings\": [{\"storeys\": 3, \"frequency_hz\": 2, "
 	    "\"mass_kg\": 1e5}, {\"storeys\": 6, \"frequency_hz\": 1.4, \"mass_kg\": 1e5, \"law\": {\"type\": "
-	    "\"elastoplastic\", \"target_demand\": 3}}], \"excitation\": {\"signals\": 2, "
+	    "\"elastoplastic\", \"yield_displacement_m\": 0.01}}], \"excitation\": {\"signals\": 2, "
 	    "\"peak_m_s2\": 3}}, \"inputs\": [{\"path\": \"/contact/gap_m\", \"name\": \"gap\", "
 	    "\"distribution\": "
 	    "{\"type\": \"uniform\", \"min\": 0, \"max\": 0.05}}, {\"path\": \"/buildings/0/mass_kg\", \"name\": "
