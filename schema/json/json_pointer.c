@@ -35,16 +35,14 @@ void reading_close(struct reading *reading)
 	cJSON_Delete((cJSON *)reading);
 }
 
-/* Reads one unescaped reference token of a pointer; returns the position after it. */
-static const char *part(const char *at, char name[POINTER_SIZE])
+const char *json_pointer_token(const char *at, char *token)
 {
-	size_t n = 0;
 	for (at++; *at && *at != '/'; at++) {
 		bool escaped = *at == '~' && (at[1] == '0' || at[1] == '1');
-		name[n++] = escaped ? (at[1] == '0' ? '~' : '/') : *at;
+		*token++ = escaped ? (at[1] == '0' ? '~' : '/') : *at;
 		at += escaped;
 	}
-	name[n] = 0;
+	*token = 0;
 	return at;
 }
 
@@ -64,7 +62,7 @@ static const cJSON *find(const struct reading *reading, const char *format, va_l
 	for (const char *at = pointer; node && *at;) {
 		if (*at != '/')
 			return NULL;
-		at = part(at, name);
+		at = json_pointer_token(at, name);
 		node = cJSON_IsArray(node)    ? element(node, name)
 		       : cJSON_IsObject(node) ? cJSON_GetObjectItemCaseSensitive(node, name)
 		                              : NULL;

@@ -15,6 +15,10 @@
 
 struct reading;
 
+/* Reads the token of a pointer at a "/", with ~0 and ~1 replaced by ~ and /; returns the position behind it.  token: as long as the
+ * pointer */
+const char *json_pointer_token(const char *at, char *token);
+
 struct reading *reading_open(const char *text, size_t length); /* NULL: not JSON, or out of memory */
 void reading_close(struct reading *reading);
 
