@@ -90,27 +90,20 @@ static bool other_object(const struct reader *r, const char *name, char text[80]
 
 static void unknown(struct reader *r, const char *pattern, const char *name)
 {
-	const struct field *nearest = NULL;
-	int best = 1000;
-	for (int i = 0; i < fields_count; i++) {
-		if (!fields_child(&fields[i], pattern) ||
-		    !fields_used(&fields[i], r->kind, r->excitation, r->solver) ||
-		    (r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
-			continue;
-		int distance = near_name_distance(name, fields_name(&fields[i]));
-		if (distance < best) {
-			best = distance;
-			nearest = &fields[i];
-		}
-	}
+	struct near_name_search search = near_name_begin(name);
+	for (int i = 0; i < fields_count; i++)
+		if (fields_child(&fields[i], pattern) && fields_used(&fields[i], r->kind, r->excitation, r->solver) &&
+		    !(r->study->elsewhere && fields[i].sceneless == FIELD_UNUSED))
+			near_name_try(&search, fields_name(&fields[i]));
+	const char *meant = near_name_found(&search);
 	char within[80], other[80];
 	snprintf(within, sizeof within, "/scene/%.64s", name);
 	if (instead_of(name))
 		problems_add(r->problems, r->pointer, "unknown member: write %s", instead_of(name));
 	else if (!*pattern && fields_find(within))
 		problems_add(r->problems, r->pointer, "unknown member: it belongs in /scene");
-	else if (nearest && near_name(best, name))
-		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", fields_name(nearest));
+	else if (meant)
+		problems_add(r->problems, r->pointer, "unknown member, did you mean \"%s\"?", meant);
 	else if (other_object(r, name, other))
 		problems_add(r->problems, r->pointer, "unknown member: it belongs in %s", other);
 	else
