@@ -23,6 +23,7 @@
 /* A column of the outputs. */
 struct column {
 	int output;    /* -1: an input */
+	int next;      /* next column of this output; -1: it is the last */
 	int replicate; /* from 1; 0: the output itself */
 	bool variance; /* of the mean */
 };
@@ -33,6 +34,7 @@ struct samples {
 	const struct given_table *outputs;
 	struct column *columns;         /* (outputs->n_columns) */
 	char **names;                   /* of the outputs  (n_outputs) */
+	int *first;                     /* first column of each output  (n_outputs) */
 	int n_outputs, n_rows, missing; /* n_rows: complete lines */
 	int n_points;                   /* different inputs */
 	bool noisy;                     /* outputs have variances or replicates */
@@ -52,9 +54,9 @@ static void samples_free(struct samples *s)
 {
 	for (int o = 0; o < s->n_outputs; o++)
 		free(s->names[o]);
-	void *const memory[] = {s->columns, s->names,   s->row,          s->sample,  s->count,   s->x,
-	                        s->y,       s->noise,   s->values,       s->scratch, s->cell,    s->table,
-	                        s->order,   s->indices, s->given.inputs, s->point,   s->repeats, s->mean};
+	void *const memory[] = {s->columns, s->names,        s->first,  s->row,     s->sample, s->count, s->x,
+	                        s->y,       s->noise,        s->values, s->scratch, s->cell,   s->table, s->order,
+	                        s->indices, s->given.inputs, s->point,  s->repeats, s->mean};
 	for (size_t k = 0; k < sizeof memory / sizeof memory[0]; k++)
 		free(memory[k]);
 }
@@ -99,10 +101,8 @@ struct output_columns {
 static struct output_columns output_columns(const struct samples *s, int output)
 {
 	struct output_columns n = {0};
-	for (int c = 0; c < s->outputs->n_columns; c++) {
+	for (int c = s->first[output]; c >= 0; c = s->columns[c].next) {
 		const struct column *column = &s->columns[c];
-		if (column->output != output)
-			continue;
 		n.variances += column->variance;
 		n.replicates += column->replicate > 0;
 		n.single += !column->variance && column->replicate == 0;
@@ -138,6 +138,20 @@ static void outputs_check(struct samples *s, struct problems *problems)
 	s->noisy = variances || replicates;
 }
 
+/* Links the columns of each output, ascending. */
+static void columns_link(struct samples *s)
+{
+	for (int o = 0; o < s->n_outputs; o++)
+		s->first[o] = -1;
+	for (int c = s->outputs->n_columns - 1; c >= 0; c--) {
+		struct column *column = &s->columns[c];
+		if (column->output < 0)
+			continue;
+		column->next = s->first[column->output];
+		s->first[column->output] = c;
+	}
+}
+
 static void outputs_find(const struct given_table *x, const struct given_table *y, struct samples *s,
                          struct problems *problems)
 {
@@ -160,6 +174,7 @@ static void outputs_find(const struct given_table *x, const struct given_table *
 	}
 	if (s->n_outputs == 0)
 		problems_add(problems, "line 1", "has no column of an output");
+	columns_link(s);
 	outputs_check(s, problems);
 	for (int c = 0; c < y->n_columns; c++)
 		for (int i = 0; i < y->n_rows && s->columns[c].variance; i++)
@@ -272,6 +287,7 @@ static bool samples_init(struct samples *s, const struct given_table *x, const s
 	*s = (struct samples){.outputs = y};
 	s->columns = calloc((size_t)y->n_columns, sizeof *s->columns);
 	s->names = calloc((size_t)y->n_columns, sizeof *s->names);
+	s->first = calloc((size_t)y->n_columns, sizeof *s->first);
 	s->row = calloc(n + 1, sizeof *s->row);
 	s->sample = calloc(n + 1, sizeof *s->sample);
 	s->count = calloc(n + 1, sizeof *s->count);
@@ -288,9 +304,9 @@ static bool samples_init(struct samples *s, const struct given_table *x, const s
 	s->scratch = calloc(pound_given_scratch((int)n, (int)d), sizeof *s->scratch);
 	s->indices = calloc(1, sizeof *s->indices);
 	s->given.inputs = calloc(d, sizeof *s->given.inputs);
-	return s->columns && s->names && s->row && s->sample && s->count && s->point && s->repeats && s->mean &&
-	       s->cell && s->table && s->x && s->y && s->noise && s->values && s->order && s->scratch &&
-	       s->indices && s->given.inputs;
+	return s->columns && s->names && s->first && s->row && s->sample && s->count && s->point && s->repeats &&
+	       s->mean && s->cell && s->table && s->x && s->y && s->noise && s->values && s->order &&
+	       s->scratch && s->indices && s->given.inputs;
 }
 
 /* ---- one output ---- */
@@ -303,15 +319,13 @@ static double value_of(const struct samples *s, int output, int row, double *var
 	double sum = 0.0, squares = 0.0;
 	int n = 0;
 	*variance = 0.0;
-	for (int c = 0; c < y->n_columns; c++)
-		if (s->columns[c].output == output) {
-			sum += s->columns[c].variance ? 0.0 : cell[c];
-			n += !s->columns[c].variance;
-			*variance = s->columns[c].variance ? cell[c] : *variance;
-		}
-	for (int c = 0; c < y->n_columns && n > 1; c++)
-		if (s->columns[c].output == output)
-			squares += (cell[c] - sum / n) * (cell[c] - sum / n);
+	for (int c = s->first[output]; c >= 0; c = s->columns[c].next) {
+		sum += s->columns[c].variance ? 0.0 : cell[c];
+		n += !s->columns[c].variance;
+		*variance = s->columns[c].variance ? cell[c] : *variance;
+	}
+	for (int c = s->first[output]; c >= 0 && n > 1; c = s->columns[c].next)
+		squares += (cell[c] - sum / n) * (cell[c] - sum / n);
 	if (n > 1)
 		*variance = squares / (n - 1.0) / n;
 	return sum / n;
