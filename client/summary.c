@@ -217,11 +217,13 @@ static void print_estimate(const struct reading *result, const char *input, cons
 		printf("  %s %s %7s", index, rounded, "");
 }
 
+// first words of the note of an output whose intervals are too narrow (engine/result.h: POUND_NOTE_FEW_DECIDE)
+static const char FEW_ROWS[] = "few rows hold";
+
 /* Rows needed for reliable intervals, read from the note of the output; NAN: the present rows are enough. */
 static double rows_needed(const struct reading *result, const char *output)
 {
-	const char *note = reading_text(result, "%s/note", output),
-	           *few = note ? strstr(note, "few rows hold") : NULL;
+	const char *note = reading_text(result, "%s/note", output), *few = note ? strstr(note, FEW_ROWS) : NULL;
 	const char *colon = few ? strchr(few, ':') : NULL;
 	return colon ? strtod(colon + 1, NULL) : NAN;
 }
@@ -562,7 +564,7 @@ static char *tables_of(const struct reading *result)
  * show; the caller frees it.  NULL: nothing is left. */
 static char *note_shown(const char *note)
 {
-	static const char *const left_out[] = {"few rows hold", "S2_excitation"};
+	static const char *const left_out[] = {FEW_ROWS, "S2_excitation"};
 	char *shown = NULL;
 	while (note && *note) {
 		const char *next = strstr(note, "; ");
