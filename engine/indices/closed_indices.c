@@ -295,13 +295,18 @@ static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
 		r->w = 0.0;
 }
 
+/* What an interval is computed from: effective rows, and the standard error. */
+struct basis {
+	double rows, error;
+};
+
 /* The ratio of a combination to the whole variance, with the interval of its linearization.
  *
  * Given    own       column whose pairs the combination uses; -1: several columns
- * Returns  behind    effective rows of the interval; NULL: not requested
+ * Returns  basis     of the interval; NULL: not requested
  */
 static struct pound_estimate ratio_interval(const struct combination *c, const struct columns *columns,
-                                            int own, double *behind)
+                                            int own, struct basis *basis)
 {
 	const int n = columns->closed->n_columns, n_rows = columns->rows->n_rows;
 	// few rows do not determine weights, and the columns of the empty and the full set are the control variates themselves
@@ -319,10 +324,12 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
 		const struct row_terms t = row_terms(&r, columns->estimate + (size_t)i * 2 * n);
 		columns->influence[i] = (t.above - r.v * t.none - ratio * (t.below + r.w * t.change)) / below;
 	}
-	const double half_width =
-	    pound_jackknife_half_width(columns->influence, n_rows, &columns->rows->scatter, columns->groups);
-	if (behind)
-		*behind = pound_jackknife_rows(columns->influence, n_rows);
+	double quantile;
+	const double error = pound_jackknife_error(columns->influence, n_rows, &columns->rows->scatter,
+	                                           columns->groups, &quantile),
+	             half_width = quantile * error;
+	if (basis)
+		*basis = (struct basis){pound_jackknife_rows(columns->influence, n_rows), error};
 	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
 }
 
@@ -351,20 +358,20 @@ static struct combination shapley(const struct columns *columns, int j)
 }
 
 /* Closed index of a set; below, its total index. */
-static struct pound_estimate closed_of(const struct columns *columns, unsigned set, double *behind)
+static struct pound_estimate closed_of(const struct columns *columns, unsigned set, struct basis *basis)
 {
 	struct combination c = combination(columns);
 	add(&c, 1.0, set);
-	return ratio_interval(&c, columns, column_for(&c, set), behind);
+	return ratio_interval(&c, columns, column_for(&c, set), basis);
 }
 
-static struct pound_estimate total_of(const struct columns *columns, unsigned set, double *behind)
+static struct pound_estimate total_of(const struct columns *columns, unsigned set, struct basis *basis)
 {
 	const unsigned all = all_of(columns->closed);
 	struct combination c = combination(columns);
 	add(&c, 1.0, all);
 	add(&c, -1.0, all ^ set);
-	return ratio_interval(&c, columns, column_for(&c, all ^ set), behind);
+	return ratio_interval(&c, columns, column_for(&c, all ^ set), basis);
 }
 
 /* Closed indices of the proper sets, and second-order indices of the pairs: all over one denominator, so that they add
@@ -427,8 +434,12 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 		effect.known = closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX;
 		if (effect.known)
 			effect = shapley(&columns, j);
-		results->first[j] = closed_of(&columns, 1u << j, &results->first_rows[j]);
-		results->total[j] = total_of(&columns, 1u << j, &results->total_rows[j]);
+		struct basis first = {0}, total = {0};
+		results->first[j] = closed_of(&columns, 1u << j, &first);
+		results->total[j] = total_of(&columns, 1u << j, &total);
+		results->first_rows[j] = first.rows;
+		results->total_rows[j] = total.rows;
+		results->total_error[j] = total.error;
 		results->shapley[j] = ratio_interval(&effect, &columns, -1, NULL);
 	}
 	results->groups.n = closed->n_groups;

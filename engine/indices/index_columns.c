@@ -8,6 +8,7 @@
  *    polynomial's estimate, which is unbiased.
  *    If few rows hold most of the variance, and an index has few effective rows, chaos_expansion.c is taken, whose
  *    denominator has the same large outputs as its numerator: the narrowest of several intervals would be too narrow.
+ *    The upper end of ST allows for the skewness of squared differences (totals_fill).
  * 3. Interactions and conditional means are from chaos_expansion.c.
  * 4. A column that cannot be estimated is a copy of the next best, and a note reports it.  Nothing is clipped.
  * 5. If the samples of a row share noise of unknown covariance, products and differences of samples give indices conditional
@@ -202,6 +203,35 @@ static void behind_take(const struct sources *s, struct pound_estimate estimate,
 		*s->behind = rows;
 }
 
+/* Total indices by pick-freeze and by polynomials, and what their upper ends widen their intervals by. */
+struct totals {
+	struct pound_estimate plain[POUND_INPUTS_MAX], closed[POUND_INPUTS_MAX];
+	double plain_widening[POUND_INPUTS_MAX], closed_widening[POUND_INPUTS_MAX];
+};
+
+static double raise(struct pound_estimate *estimate, double distance)
+{
+	const double before = half(*estimate);
+	estimate->high = fmax(estimate->high, estimate->value + distance);
+	return before > 0.0 ? half(*estimate) / before : 1.0;
+}
+
+/* A total index is the mean of squared differences.  If few rows decide, their distribution is skewed, and rows that matter may be
+ * missing: the estimate and its standard error are then too low together.  The upper ends therefore follow from Hall's
+ * transformation (pound_jackknife_skewed).  A polynomial reduces the differences, but is worst where outputs are extreme: what it
+ * leaves has at least the skewness of the differences themselves, even if the rows that would show it are missing. */
+static void totals_fill(const struct sources *s, struct totals *totals)
+{
+	const struct pound_pick_freeze *p = &s->pick_freeze;
+	const struct pound_upper *upper = s->corrected ? p->total_upper : p->total_raw_upper;
+	copy(s, s->corrected ? p->total : p->total_raw, totals->plain);
+	copy(s, s->closed.total, totals->closed);
+	for (int j = 0; j < s->rows->n_inputs; j++) {
+		totals->plain_widening[j] = raise(&totals->plain[j], half(totals->plain[j]) * upper[j].widening);
+		totals->closed_widening[j] = raise(&totals->closed[j], s->closed.total_error[j] * upper[j].errors);
+	}
+}
+
 /* A first-order index cannot exceed the total index.  If its interval lies above the interval of the total, the noise of few rows passes
  * for an effect of the input: the pick-freeze estimate is taken, which is exactly 0 for an input without effect.  Not with few
  * effective rows, where the total may have missed the rows that matter. */
@@ -210,7 +240,9 @@ static void first_bound(const struct sources *s, bool heavy, struct pound_estima
 {
 	const struct pound_pick_freeze *p = &s->pick_freeze;
 	struct pound_estimate total[POUND_INPUTS_MAX];
-	narrower(s, s->corrected ? p->total : p->total_raw, s->closed.total, total);
+	struct totals totals;
+	totals_fill(s, &totals);
+	narrower(s, totals.plain, totals.closed, total);
 	for (int j = 0; j < s->rows->n_inputs; j++) {
 		replaced[j] = !s->shared && !heavy && into[j].low > total[j].high;
 		if (replaced[j])
@@ -292,14 +324,15 @@ static struct pound_estimate nearer_a_share(struct pound_estimate p, struct poun
  * the polynomial, if its value is near [0, 1]. */
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 {
-	const struct pound_pick_freeze *p = &s->pick_freeze;
-	const struct pound_estimate *plain = s->corrected ? p->total : p->total_raw;
 	const int d = s->rows->n_inputs;
 	const bool heavy = few_hold_most(s->rows);
-	narrower(s, plain, s->closed.total, into);
+	struct totals totals;
+	totals_fill(s, &totals);
+	const struct pound_estimate *plain = totals.plain, *closed = totals.closed;
+	narrower(s, plain, closed, into);
 	for (int j = 0; j < d; j++) {
 		if (heavy && plain[j].high > plain[j].low && s->closed.total_rows[j] < ROWS_BEHIND)
-			into[j] = nearer_a_share(s->closed.total[j], plain[j]);
+			into[j] = nearer_a_share(closed[j], plain[j]);
 		if (plain[j].high > plain[j].low)
 			behind_take(s, into[j], s->closed.total_rows[j]);
 	}
@@ -307,7 +340,8 @@ static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 		const struct level *level = &s->level[k];
 		for (int j = 0; j < d && level->kept >= POUND_ROWS_MIN; j++)
 			s->accuracy->inputs[j].total_half[k] =
-			    same(into[j], s->closed.total[j]) ? level->closed.total[j] : level->pick_freeze.total[j];
+			    same(into[j], closed[j]) ? level->closed.total[j] * totals.closed_widening[j]
+			                             : level->pick_freeze.total[j] * totals.plain_widening[j];
 	}
 }
 

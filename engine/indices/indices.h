@@ -142,6 +142,19 @@ double pound_jackknife_student(int freedom); /* 97.5 % quantile of Student's t *
 /* Half of the 95 % interval of a mean over rows, with groups or without.  sums: (groups) */
 double pound_jackknife_half_width(const double *value, int n_rows, const struct pound_scatter *scatter,
                                   double *sums);
+/* Its standard error; quantile: half of the interval over it. */
+double pound_jackknife_error(const double *value, int n_rows, const struct pound_scatter *scatter,
+                             double *sums, double *quantile);
+/* Distance of the upper end of a value's 95 % interval from the value: in standard errors, and over half of the interval that
+ * skewness and few effective rows do not widen. */
+struct pound_upper {
+	double errors, widening;
+};
+
+double pound_jackknife_skewed(double quantile, double skewness); /* in standard errors */
+/* scratch: (groups) */
+void pound_jackknife_upper(const struct pound_statistic *statistic, const struct pound_scatter *scatter,
+                           int n_rows, double *scratch, struct pound_upper *upper);
 /* Effective number of rows in the scatter of a mean: n / 3 for normal values, few if a few rows dominate. */
 double pound_jackknife_rows(const double *value, int n_rows);
 
@@ -150,6 +163,8 @@ struct pound_pick_freeze {
 	struct pound_estimate first_raw[POUND_INPUTS_MAX],
 	    total_raw[POUND_INPUTS_MAX]; /* noise of few signals included */
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX]; /* of the mean over all signals */
+	struct pound_upper total_upper[POUND_INPUTS_MAX],
+	    total_raw_upper[POUND_INPUTS_MAX];               /* of the intervals of ST, see index_columns.c */
 	struct pound_estimate with_signal[POUND_INPUTS_MAX]; /* second-order index of the input and the signal */
 	struct pound_estimate signal_total_one;              /* total index of the signal in single runs */
 	struct pound_estimate signal_total; /* variance fraction left in the means over signals */
@@ -202,7 +217,8 @@ struct pound_closed {
 struct pound_closed_results {
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
 	double first_rows[POUND_INPUTS_MAX],
-	    total_rows[POUND_INPUTS_MAX]; /* effective, of the intervals: pound_jackknife_rows */
+	    total_rows[POUND_INPUTS_MAX];     /* effective, of the intervals: pound_jackknife_rows */
+	double total_error[POUND_INPUTS_MAX]; /* standard error */
 	struct pound_set_indices sets;
 	struct pound_group_indices groups;
 };

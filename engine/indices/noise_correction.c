@@ -144,12 +144,16 @@ void pound_noise_correction_estimates(const struct pound_rows *rows, struct poun
 	const struct pound_statistic statistic = {
 	    FIRST_INPUT + PER_INPUT * d, BLOCKS * d + SINGLES, moments_fill, values_fill, rows, rows->stop};
 	struct pound_estimate estimates[POUND_VALUES_MAX];
+	struct pound_upper upper[POUND_VALUES_MAX];
 	pound_bootstrap_estimates(&statistic, &rows->scatter, rows->n_rows, resampling, scratch, estimates);
+	pound_jackknife_upper(&statistic, &rows->scatter, rows->n_rows, scratch, upper);
 	for (int j = 0; j < d; j++) {
 		result->first_raw[j] = estimates[FIRST_RAW * d + j];
 		result->total_raw[j] = estimates[TOTAL_RAW * d + j];
 		result->first[j] = estimates[FIRST * d + j];
 		result->total[j] = estimates[TOTAL * d + j];
+		result->total_upper[j] = upper[TOTAL * d + j];
+		result->total_raw_upper[j] = upper[TOTAL_RAW * d + j];
 		result->with_signal[j] = estimates[WITH_SIGNAL * d + j];
 	}
 	result->signal_total_one = estimates[BLOCKS * d + SIGNAL_TOTAL_ONE];
