@@ -55,7 +55,8 @@ static void design_score(const struct pound_design *design, const double *exact,
 static void intervals_of_a_small_total_hold(void **state)
 {
 	(void)state;
-	const double square = pow(3, -D), variance = 1. / 12 + square - pow(4, -D) - 2 * (pow(2, -7) / 3 - pow(2, -9));
+	const double square = pow(3, -D),
+	             variance = 1. / 12 + square - pow(4, -D) - 2 * (pow(2, -7) / 3 - pow(2, -9));
 	// x (1 - x_2 ... x_8) depends on x_1 with the mean square of its slope over 12
 	const double exact[2] = {3 * square / 12 / variance, (1 - pow(2, -6) + 3 * square) / 12 / variance};
 	for (int method = 0; pound_design_name(method); method++) {
