@@ -82,8 +82,12 @@ static void every_column_comes_from_its_function(void **state)
 	                              &closed, curves);
 	for (int j = 0; j < D; j++) {
 		first[j] = width(local[j]) < width(closed.first[j]) ? local[j] : closed.first[j];
-		total[j] =
-		    width(pick_freeze.total[j]) < width(closed.total[j]) ? pick_freeze.total[j] : closed.total[j];
+		// upper ends for skewed squared differences
+		const struct pound_upper *upper = &pick_freeze.total_upper[j];
+		struct pound_estimate plain = pick_freeze.total[j], smooth = closed.total[j];
+		plain.high = fmax(plain.high, plain.value + 0.5 * width(plain) * upper->widening);
+		smooth.high = fmax(smooth.high, smooth.value + closed.total_error[j] * upper->errors);
+		total[j] = width(plain) < width(smooth) ? plain : smooth;
 	}
 	const struct {
 		enum pound_index index;
