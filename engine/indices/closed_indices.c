@@ -172,6 +172,7 @@ struct columns {
 	double *mean;           /* (2 x n_columns) */
 	double *influence;      /* of the rows on an index  (n_rows) */
 	double *groups;         /* (groups, at most n_rows) */
+	bool few;               /* effective rows in the variance, see ratio_weigh */
 };
 
 static void means_fill(const struct columns *columns)
@@ -258,7 +259,8 @@ static struct row_terms row_terms(const struct ratio *r, const double *estimate)
 }
 
 /* Chooses the weights from the regression of N - ratio C on C_0 and ratio (C_own - C) over the rows: v is its coefficient clipped
- * to [-1, 1]; w is the mean of 1 and its coefficient clipped to [0, 1], because a few large outputs mislead the regression.
+ * to [-1, 1]; w is the mean of 1 and its coefficient clipped to [0, 1], because a few large outputs mislead the regression.  If the
+ * variance has fewer than five effective rows, the coefficient of a total is as good as unknown: its mean over [0, 1] replaces it.
  *
  * Source   w = 1: Janon et al. 2014, ESAIM: Probab. Stat. 18, 342-364; w = 0: Jansen 1999; the regression: control variates
  *          with estimated coefficients, Glasserman 2003, Monte Carlo methods in financial engineering, section 4.1
@@ -290,7 +292,9 @@ static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
 		w = (zc * nn - zn * nc) / both;
 	}
 	r->v = v < -1.0 ? -1.0 : v > 1.0 ? 1.0 : v;
-	r->w = 0.5 + 0.5 * (w > 0.0 ? fmin(w, 1.0) : 0.0);
+	const bool total = r->combination->weight[columns->closed->n_columns - 1] != 0.0;
+	const double known = w > 0.0 ? fmin(w, 1.0) : 0.0, unknown = 0.5;
+	r->w = 0.5 + 0.5 * (total && columns->few ? unknown : known);
 	if (!(mean->below + r->w * mean->change > columns->rows->variance_floor))
 		r->w = 0.0;
 }
@@ -421,12 +425,13 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
                           const struct pound_rows *rows, double *scratch,
                           struct pound_closed_results *results)
 {
-	const struct columns columns = {.closed = closed,
-	                                .rows = rows,
-	                                .estimate = estimates,
-	                                .mean = scratch,
-	                                .influence = scratch + 2 * closed->n_columns,
-	                                .groups = scratch + 2 * closed->n_columns + rows->n_rows};
+	struct columns columns = {.closed = closed,
+	                          .rows = rows,
+	                          .estimate = estimates,
+	                          .mean = scratch,
+	                          .influence = scratch + 2 * closed->n_columns,
+	                          .groups = scratch + 2 * closed->n_columns + rows->n_rows};
+	columns.few = pound_rows_behind(rows) < POUND_ROWS_BEHIND;
 	means_fill(&columns);
 	*results = (struct pound_closed_results){0};
 	for (int j = 0; j < closed->n_inputs; j++) {

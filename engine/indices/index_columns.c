@@ -30,7 +30,6 @@ struct level {
 
 enum {
 	RESAMPLES_FEW = 400, /* half widths to 5 % */
-	ROWS_BEHIND = 5,     /* least effective rows of a valid interval: make statistics */
 };
 
 /* The data that the columns are estimated from. */
@@ -174,25 +173,10 @@ static void undefined(struct pound_estimate *estimates, int n)
 		estimates[k] = (struct pound_estimate){NAN, NAN, NAN};
 }
 
-/* Effective number of rows in the variance: (sum v)^2 / sum v^2, v the sum of squares of a row. */
-static double rows_of_variance(const struct pound_rows *rows)
-{
-	double sum = 0.0, squares = 0.0;
-	for (int i = 0; i < rows->n_rows; i++) {
-		const double *y = rows->y + (size_t)i * rows->n_samples;
-		double v = 0.0;
-		for (int p = 0; p < rows->n_samples; p++)
-			v += y[p] * y[p];
-		sum += v;
-		squares += v * v;
-	}
-	return sum * sum / squares;
-}
-
 /* Whether the variance has fewer effective rows than a quarter of the rows; normal outputs have more. */
 static bool few_hold_most(const struct pound_rows *rows)
 {
-	return rows_of_variance(rows) < 0.25 * rows->n_rows;
+	return pound_rows_behind(rows) < 0.25 * rows->n_rows;
 }
 
 /* Updates the fewest effective rows with the rows of a used interval, unless the interval is too narrow to matter. */
@@ -281,7 +265,7 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		pound_local_regression_behind(s->rows, s->scratch, behind);
 	for (int j = 0; j < d && !s->shared; j++) {
 		// with few effective rows the mean of ten neighbors is not yet the conditional mean
-		if (heavy && s->closed.first_rows[j] < ROWS_BEHIND)
+		if (heavy && s->closed.first_rows[j] < POUND_ROWS_BEHIND)
 			into[j] = s->closed.first[j];
 		behind_take(s, into[j],
 		            neighbours && !same(into[j], s->closed.first[j]) ? behind[j] : s->closed.first_rows[j]);
@@ -331,7 +315,7 @@ static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 	const struct pound_estimate *plain = totals.plain, *closed = totals.closed;
 	narrower(s, plain, closed, into);
 	for (int j = 0; j < d; j++) {
-		if (heavy && plain[j].high > plain[j].low && s->closed.total_rows[j] < ROWS_BEHIND)
+		if (heavy && plain[j].high > plain[j].low && s->closed.total_rows[j] < POUND_ROWS_BEHIND)
 			into[j] = nearer_a_share(closed[j], plain[j]);
 		if (plain[j].high > plain[j].low)
 			behind_take(s, into[j], s->closed.total_rows[j]);
@@ -400,7 +384,7 @@ static void unseen_widen(const struct sources *s, struct pound_indices *indices)
 		for (int j = 0; j < s->rows->n_inputs; j++) {
 			struct pound_estimate *e = &indices->index[headline[k]][j];
 			if (e->value == 0.0 && e->high == 0.0 && pound_rows_levels(s->rows, j) != 1)
-				e->high = fmin(1.0, missed / rows_of_variance(s->rows));
+				e->high = fmin(1.0, missed / pound_rows_behind(s->rows));
 		}
 }
 
@@ -491,17 +475,18 @@ static bool lacks_interval(const struct pound_indices *indices, int n_inputs)
 	return false;
 }
 
-/* Whether too few rows hold the variance for their scatter to give valid intervals: fewer than ROWS_BEHIND effective rows in the
+/* Whether too few rows hold the variance for their scatter to give valid intervals: fewer than POUND_ROWS_BEHIND effective rows in the
  * variance, or in an interval while few rows hold most of the variance. */
 static bool few_decide(const struct sources *s)
 {
-	return rows_of_variance(s->rows) < ROWS_BEHIND || (*s->behind < ROWS_BEHIND && few_hold_most(s->rows));
+	return pound_rows_behind(s->rows) < POUND_ROWS_BEHIND ||
+	       (*s->behind < POUND_ROWS_BEHIND && few_hold_most(s->rows));
 }
 
 /* Rows needed for valid intervals: effective rows grow at most in proportion to rows.  Rounded up to two digits. */
 static double rows_needed(double n, double behind)
 {
-	double needed = n * ROWS_BEHIND / fmax(behind, 1.0), digits = 1.0;
+	double needed = n * POUND_ROWS_BEHIND / fmax(behind, 1.0), digits = 1.0;
 	while (needed / digits > 100.0)
 		digits *= 10.0;
 	return ceil(needed / digits) * digits;
@@ -608,7 +593,8 @@ int pound_index_columns_indices(const struct pound_sample_values *values,
 		undefined(indices->share, POUND_N_SHARES);
 	}
 	const bool few = !rows_enough(&s), decided = varies && !few && few_decide(&s);
-	indices->rows_needed = decided ? rows_needed(values->n_rows, fmin(behind, rows_of_variance(&rows))) : NAN;
+	indices->rows_needed =
+	    decided ? rows_needed(values->n_rows, fmin(behind, pound_rows_behind(&rows))) : NAN;
 	if (decided)
 		unseen_widen(&s, indices);
 	indices->notes = notes_of((const bool[POUND_N_NOTES]){

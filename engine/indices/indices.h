@@ -80,6 +80,9 @@ unsigned pound_rows_mask(const struct pound_rows *rows, int sample);
 int pound_rows_levels(const struct pound_rows *rows, int input);
 /* Variance over all samples of the plain protocol; y: rows->y or rows->plain. */
 double pound_rows_variance(const struct pound_rows *rows, const double *y);
+/* Effective number of rows in the variance, and the least number that gives valid intervals: make statistics */
+double pound_rows_behind(const struct pound_rows *rows);
+enum { POUND_ROWS_BEHIND = 5 };
 /* Covariances of a row's outputs over draws of the noise  (n_samples x n_samples) */
 void pound_rows_noise(const struct pound_rows *rows, int row, double *noise);
 

@@ -229,3 +229,18 @@ void pound_rows_init(struct pound_rows *rows, const struct pound_sample_values *
 	double rounding = (values->n_signals + 2) * DBL_EPSILON * largest;
 	rows->variance_floor = rounding * rounding;
 }
+
+/* Effective number of rows in the variance: (sum v)^2 / sum v^2, v the sum of squares of a row. */
+double pound_rows_behind(const struct pound_rows *rows)
+{
+	double sum = 0.0, squares = 0.0;
+	for (int i = 0; i < rows->n_rows; i++) {
+		const double *y = rows->y + (size_t)i * rows->n_samples;
+		double v = 0.0;
+		for (int p = 0; p < rows->n_samples; p++)
+			v += y[p] * y[p];
+		sum += v;
+		squares += v * v;
+	}
+	return sum * sum / squares;
+}

@@ -151,6 +151,46 @@ static void second_order_indices_and_shapley_effects_follow_from_the_closed_ones
 	free(got);
 }
 
+/* The total of the first input from rows of which `large` are 1 in A and in all mixtures but the first, and all else is 0.  A row's
+ * half squared difference is N = 1/2, the mean square of its six samples C = 4/6, the one of A and the mixture 1/2.
+ * As N - (N / C) C is 0 in every row, the regression gives the coefficient 0. */
+static double total_of_large_rows(int large)
+{
+	enum { N = 40, SAMPLES = D + 2 };
+	static const double row[SAMPLES] = {1, 0, 0, 1, 1, 1};
+	const double part[POUND_CLOSED_COLUMNS_MAX] = {0};
+	const struct pound_control_variate none = {NULL, 0.0, part};
+	double numerator[N * SAMPLES] = {0}, denominator[N * SAMPLES];
+	for (int k = 0; k < N * SAMPLES; k++) {
+		numerator[k] = k / SAMPLES < large ? row[k % SAMPLES] : 0.0;
+		denominator[k] = 1.0;
+	}
+	const struct pound_sample_values values = {
+	    .n_rows = N, .n_inputs = D, .n_signals = 1, .numerator = numerator, .denominator = denominator};
+	struct pound_closed closed;
+	struct pound_closed_results results;
+	struct pound_rows rows;
+	pound_closed_init(&closed, &values);
+	double *held = malloc(sizeof *held * pound_rows_scratch(&values));
+	double *estimates = malloc(sizeof *estimates * N * 2 * (size_t)closed.n_columns);
+	double *scratch = malloc(sizeof *scratch * pound_closed_scratch(&closed, N));
+	pound_rows_init(&rows, &values, held);
+	for (int i = 0; i < N; i++)
+		pound_closed_row(&closed, numerator + (size_t)i * SAMPLES, &none, NULL,
+		                 estimates + (size_t)i * 2 * (size_t)closed.n_columns);
+	pound_closed_indices(&closed, estimates, &rows, scratch, &results);
+	free(held), free(estimates), free(scratch);
+	return results.total[0].value;
+}
+
+/* N / (C + w (1/2 - C)): w is 1/2 with the coefficient 0, and 3/4 if fewer than five rows do not determine the coefficient. */
+static void a_coefficient_of_few_rows_is_not_used(void **state)
+{
+	(void)state;
+	check_near(total_of_large_rows(8), 6.0 / 7.0, 1e-14);
+	check_near(total_of_large_rows(2), 12.0 / 13.0, 1e-14);
+}
+
 enum { SEEDS = 12 };
 
 /* Root mean square errors and coverage over designs; [0] second-order indices, [1] Shapley effects. */
@@ -195,7 +235,8 @@ static void errors_at_six_thousand_runs_are_those_measured_for_the_formulas(void
 	assert_true(pair[1] <= 0.0066 && shapley[1] <= 0.0169);
 }
 
-CHECK_MAIN(cmocka_unit_test(contrasts_of_the_factorial_design_have_their_golden_values),
+CHECK_MAIN(cmocka_unit_test(a_coefficient_of_few_rows_is_not_used),
+           cmocka_unit_test(contrasts_of_the_factorial_design_have_their_golden_values),
            cmocka_unit_test(four_inputs_have_every_set_in_the_plain_design),
            cmocka_unit_test(shapley_effects_add_up_to_one),
            cmocka_unit_test(second_order_indices_and_shapley_effects_follow_from_the_closed_ones),
