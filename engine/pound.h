@@ -60,7 +60,7 @@ void pound_run_rows_complete(struct pound_run *run, int rows); /* says of how ma
 /* ... how many rows such a result may have that is to be made in about a tenth of a second, ... */
 int pound_run_rows_quick(const struct pound_run *run);
 /* ... and a second run that shares the values of a sampled run, to reduce complete rows while the run goes on */
-struct pound_run *pound_run_view(const struct pound_run *run, const atomic_bool *stop);
+struct pound_run *pound_run_view(const struct pound_run *run, int n_workers, const atomic_bool *stop);
 int pound_run_rows(const struct pound_run *run); /* used by the reductions */
 /* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));

@@ -21,7 +21,10 @@
 #include "server/http.h"
 #include "server/log.h"
 
-enum { MAKER_NICENESS = 5 }; /* between the answers and the workers */
+enum {
+	MAKER_NICENESS = 5, /* between the answers and the workers */
+	REDUCERS_MAX = 4,   /* threads of a request, for less than a tenth of a second */
+};
 
 static const double STOP_MAX = 0.3; /* [s] for the maker to exit */
 
@@ -29,13 +32,16 @@ const char *partial_source_open(struct server *server, int64_t id, const atomic_
                                 struct partial_source *source)
 {
 	*source = (struct partial_source){0};
-	if (work_view(server->work, id, stop, &source->view)) {
+	const int workers = server->options->workers;
+	if (work_view(server->work, id, workers < REDUCERS_MAX ? workers : REDUCERS_MAX, stop, &source->view)) {
+		source->n_reducers = source->view.n_reducers;
 		source->study = source->view.study;
 		source->run = source->view.run;
 		source->rows_done = source->view.rows_done;
 		return NULL;
 	}
 	source->stored = true;
+	source->n_reducers = 1;
 	const char *error = stored_run_open(server->store, id, 1, stop, &source->opened);
 	source->study = source->opened.study;
 	source->run = source->opened.run;
@@ -51,17 +57,50 @@ void partial_source_close(struct partial_source *source)
 		stored_run_close(&source->opened);
 }
 
+/* The reductions of a run, shared by threads. */
+struct reductions {
+	struct pound_run *run;
+	atomic_int next, status; /* the next to take; POUND_OK, or why one failed */
+	atomic_int n_reducers;   /* the next worker number */
+};
+
+static void *reduce(void *of)
+{
+	struct reductions *all = of;
+	const int worker = all->n_reducers++, n = pound_run_reductions(all->run);
+	for (int k = all->next++; k < n && !all->status; k = all->next++) {
+		const enum pound_status status = pound_run_reduce(all->run, k, worker);
+		if (status)
+			all->status = (int)status;
+	}
+	return NULL;
+}
+
+/* Makes all reductions in n threads at most, of which the caller is one. */
+static enum pound_status reduce_all(struct pound_run *run, int n)
+{
+	struct reductions all = {.run = run};
+	pthread_t threads[REDUCERS_MAX];
+	int started = 0;
+	while (started < n - 1 && pthread_create(&threads[started], NULL, reduce, &all) == 0)
+		started++;
+	reduce(&all);
+	for (int t = 0; t < started; t++)
+		pthread_join(threads[t], NULL);
+	return (enum pound_status)all.status;
+}
+
 /* The result of the first rows, its body on the heap: NULL, if any status or out of memory; keeps a copy. */
 static enum pound_status source_make(struct server *server, struct partial_source *source, int64_t id,
                                      int rows, struct partial_result *made)
 {
-	enum pound_status status = POUND_OK;
 	const double start = stored_run_clock();
 	*made = (struct partial_result){.id = id, .rows = rows};
 	pound_run_rows_take(source->run, rows);
 	pound_run_rows_complete(source->run, source->rows_done);
-	for (int k = 0; k < pound_run_reductions(source->run) && !status; k++)
-		status = pound_run_reduce(source->run, k, 0);
+	// one thread for all rows, of which its CPU time is the time that it took
+	const enum pound_status status =
+	    reduce_all(source->run, rows < source->rows_done ? source->n_reducers : 1);
 	if (!status)
 		made->body = result_to_json(source->study, pound_run_result(source->run), NULL, &made->length);
 	if (made->body)

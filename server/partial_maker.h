@@ -20,7 +20,8 @@ struct partial_source {
 	bool stored;
 	const struct pound_study *study;
 	struct pound_run *run;
-	int rows_done; /* 0: none, or the study is not sampled */
+	int rows_done;  /* 0: none, or the study is not sampled */
+	int n_reducers; /* threads that may reduce at once */
 };
 
 /* NULL, or a sentence that says why it cannot be opened; close it in either case. */

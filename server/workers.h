@@ -24,11 +24,13 @@ struct work_view {
 	struct job *job; /* NULL: the view is closed */
 	const struct pound_study *study;
 	struct pound_run *run;
-	int rows_done; /* at the start of the design */
+	int rows_done;  /* at the start of the design */
+	int n_reducers; /* threads that may reduce at once */
 };
 
 /* false: the study is not in memory, not sampled, or out of memory; else close it before work_stop, by work_unview */
-bool work_view(struct work *work, int64_t id, const atomic_bool *stop, struct work_view *view);
+bool work_view(struct work *work, int64_t id, int n_reducers, const atomic_bool *stop,
+               struct work_view *view);
 void work_unview(struct work_view *view);
 
 void work_wake(struct work *work);             /* a study was queued */

@@ -125,8 +125,8 @@ int pound_run_rows_done(const struct pound_run *run, const bool *done)
 int pound_run_rows_quick(const struct pound_run *run)
 {
 	const struct pound_cells *c = &run->campaign;
-	const int rows =
-	    (int)(POUND_VALUES_QUICK / ((int64_t)c->n_cells * c->study->n_outputs * c->n_samples + 1));
+	const int64_t of_row = (int64_t)c->n_cells * c->study->n_outputs * c->n_samples;
+	const int rows = of_row > 0 ? (int)(POUND_VALUES_QUICK / of_row) : c->n_rows;
 	const int enough = rows > POUND_ROWS_MIN ? rows : POUND_ROWS_MIN;
 	return enough < c->n_rows ? enough : c->n_rows;
 }
