@@ -23,6 +23,9 @@
  * running the block, so a caller can store blocks and resume after a restart with the same bytes. */
 struct pound_run;
 
+/* Outputs of samples (rows x samples x outputs x cells) from which the indices of pound_run_rows_quick() are made. */
+enum { POUND_VALUES_QUICK = 40 * 1024 };
+
 struct pound_run *pound_run_create(const struct pound_study *study, int n_workers); /* NULL: out of memory */
 /* the same; NULL soon after the flag is set: drawing a design of a million rows takes seconds */
 struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers,
@@ -53,6 +56,11 @@ bool pound_run_grow(struct pound_run *run);
  * to reductions and results of the first `rows` rows. */
 int pound_run_rows_done(const struct pound_run *run, const bool *done);
 void pound_run_rows_take(struct pound_run *run, int rows);
+void pound_run_rows_complete(struct pound_run *run, int rows); /* says of how many these are the first */
+/* ... how many rows such a result may have that is to be made in about a tenth of a second, ... */
+int pound_run_rows_quick(const struct pound_run *run);
+/* ... and a second run that shares the values of a sampled run, to reduce complete rows while the run goes on */
+struct pound_run *pound_run_view(const struct pound_run *run, int n_workers, const atomic_bool *stop);
 int pound_run_rows(const struct pound_run *run); /* used by the reductions */
 /* Seconds of CPU time of the calling thread, for the times of a convergence study; before the first block. */
 void pound_run_clock(struct pound_run *run, double (*cpu)(void));

@@ -469,6 +469,7 @@ struct pound_split {
 struct pound_result {
 	struct pound_split split;
 	int rows;                 /* of the design, in this result */
+	int rows_done;            /* of an intermediate result: complete when it was made; 0: as many as in it */
 	int n_looks;              /* 0: the design does not grow */
 	struct pound_look *looks; /* (n_looks) */
 	const double *

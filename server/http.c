@@ -451,7 +451,9 @@ static void *answer_aside(void *of)
 	struct request *request = of;
 	struct server *server = request->server;
 	struct reply *reply = &request->reply;
-	setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
+	// partial_maker_soon bounds the time of a partial result
+	if (request->operation != API_results || strcmp(http_argument(request, "partial"), "true") != 0)
+		setpriority(PRIO_PROCESS, (id_t)gettid(), ASIDE_NICENESS);
 	if (take_turn(request)) {
 		*reply = routes_answer(request);
 		spool_reply(&server->spools, reply);

@@ -15,6 +15,7 @@
 #include "server/fair_share.h"
 #include "server/metrics.h"
 #include "server/options.h"
+#include "server/partial_maker.h"
 #include "server/partial_results.h"
 #include "server/spool.h"
 #include "server/store.h"
@@ -29,6 +30,7 @@ struct server {
 	size_t document_length;
 	struct answer_cache answers;
 	struct partial_results partials;
+	struct partial_maker partial_maker;
 	struct metrics metrics;
 	struct connections connections;
 	struct MHD_Daemon *daemon;

@@ -87,7 +87,7 @@ static int serve(struct server *server, const sigset_t *signals)
 	                          &server->options->launch);
 	if (!server->work)
 		return EXIT_FAILURE;
-	bool listens = daemon_start(server), ended = true;
+	bool listens = partial_maker_start(&server->partial_maker, server) && daemon_start(server), ended = true;
 	if (listens) {
 		const char *listen = server->options->listen;
 		bool v6 = strchr(listen, ':');
@@ -101,6 +101,7 @@ static int serve(struct server *server, const sigset_t *signals)
 		pthread_sigmask(SIG_UNBLOCK, signals, NULL);
 		ended = daemon_stop(server);
 	}
+	ended &= partial_maker_stop(&server->partial_maker);
 	ended &= work_stop(server->work);
 	// accepted studies are on the disk: the next start resumes them as after a crash
 	if (!ended)

@@ -1,5 +1,5 @@
-/* A partial result is reused for SHARE times as long as it took to make: repeated requests then use at most about a twentieth of
- * one core for new ones, and get the others at once.  Results larger than a few MB are not kept. */
+/* A partial result is fresh for SHARE times as long as it took to make: repeated requests then use at most about a twentieth of one
+ * core for new ones, and get the others at once.  Results larger than a few MB are not kept. */
 #include "server/partial_results.h"
 
 #include <stdlib.h>
@@ -16,20 +16,21 @@ static double now_s(void)
 }
 
 /* Test     service_growth: results_so_far_come_at_once_when_asked_for_again */
-char *partial_results_take(struct partial_results *results, int64_t id, size_t *length, int *rows)
+bool partial_results_take(struct partial_results *results, int64_t id, struct partial_result *copy)
 {
-	char *copy = NULL;
+	*copy = (struct partial_result){.id = id};
 	pthread_mutex_lock(&results->lock);
-	for (int i = 0; i < PARTIAL_RESULTS && !copy; i++) {
+	for (int i = 0; i < PARTIAL_RESULTS && !copy->body; i++) {
 		const struct partial_result *r = &results->result[i];
-		if (r->id != id || !r->body || now_s() > r->until || !(copy = malloc(r->length + 1)))
+		char *body = r->id == id && r->body ? malloc(r->length + 1) : NULL;
+		if (!body)
 			continue;
-		memcpy(copy, r->body, r->length + 1);
-		*length = r->length;
-		*rows = r->rows;
+		memcpy(body, r->body, r->length + 1);
+		*copy = *r;
+		copy->body = body;
 	}
 	pthread_mutex_unlock(&results->lock);
-	return copy;
+	return copy->body && now_s() <= copy->until;
 }
 
 /* Replaces the study's last partial result, else the one that expires first. */
@@ -46,11 +47,17 @@ void partial_results_give(struct partial_results *results, const struct partial_
 		struct partial_result *r = &results->result[i];
 		into = r->id == made->id || r->until < into->until ? r : into;
 	}
-	free(into->body);
-	*into = *made;
-	into->body = copy;
-	into->until = now_s() + SHARE * took;
+	// a result of few rows may be made while another of all rows is
+	const bool later = into->id != made->id || made->rows >= into->rows;
+	if (later) {
+		free(into->body);
+		*into = *made;
+		into->body = copy;
+		into->until = now_s() + SHARE * took;
+	}
 	pthread_mutex_unlock(&results->lock);
+	if (!later)
+		free(copy);
 }
 
 void partial_results_free(struct partial_results *results)

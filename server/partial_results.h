@@ -3,6 +3,7 @@
 #define PARTIAL_RESULTS_H
 
 #include <pthread.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -13,7 +14,7 @@ struct partial_result {
 	int rows;   /* of the design, from which it was made */
 	char *body; /* (length) bytes of JSON */
 	size_t length;
-	double until; /* [s] monotonic, when it expires */
+	double until; /* [s] monotonic, until when it is fresh */
 };
 
 struct partial_results {
@@ -21,9 +22,12 @@ struct partial_results {
 	struct partial_result result[PARTIAL_RESULTS];
 };
 
-/* A copy of a study's last partial result, for the caller to free; NULL: none, expired, or out of memory. */
-char *partial_results_take(struct partial_results *results, int64_t id, size_t *length, int *rows);
-/* Keeps a copy of a partial result; took: the time it took to make [s]. */
+/* A copy of a study's last partial result, whose body the caller frees; NULL: none, or out of memory.
+ *
+ * Returns  value   it is fresh: no later one is needed */
+bool partial_results_take(struct partial_results *results, int64_t id, struct partial_result *copy);
+/* Keeps a copy of a partial result, unless the kept one has more rows; took: the time it took to make [s], 0: it is not fresh, a
+ * later one is wanted. */
 void partial_results_give(struct partial_results *results, const struct partial_result *made, double took);
 void partial_results_free(struct partial_results *results);
 

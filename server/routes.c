@@ -318,41 +318,37 @@ static const char *answer_open(const struct request *request, struct stored_run 
 }
 
 /* The partial result of the completely stored rows; retry_after [s] is for a study without any. */
-static struct reply so_far(struct request *request, int retry_after, int *rows)
+static struct reply so_far(struct request *request, int retry_after, bool ended, int *rows)
 {
-	struct stored_run opened;
+	struct server *server = request->server;
+	struct partial_result last;
+	struct partial_source source;
 	struct reply reply;
-	size_t length = 0;
-	char *body = partial_results_take(&request->server->partials, request->id, &length, rows);
-	if (body)
-		return made("application/json", body, length);
-	const double start = stored_run_clock();
-	const char *error = answer_open(request, &opened);
-	bool sampled = !error && pound_study_sampled(opened.study);
-	*rows = sampled ? pound_run_rows_done(opened.run, opened.stored) : 0;
-	if (*rows > 0) {
-		enum pound_status status = POUND_OK;
-		pound_run_rows_take(opened.run, *rows);
-		for (int k = 0; k < pound_run_reductions(opened.run) && !status; k++)
-			status = pound_run_reduce(opened.run, k, 0);
-		if (!status)
-			body = result_to_json(opened.study, pound_run_result(opened.run), NULL, &length);
-		const struct partial_result last = {.id = request->id, .rows = *rows, .body = body, .length = length};
-		if (body)
-			partial_results_give(&request->server->partials, &last, stored_run_clock() - start);
-		reply = body ? made("application/json", body, length)
-		        : !status || status == POUND_NOMEM || status == POUND_STOPPED
-		            ? no_memory()
-		            : problem(API_CONFLICT, "all runs so far failed, so there is no result yet");
+	if (partial_results_take(&server->partials, request->id, &last)) {
+		*rows = last.rows;
+		return made("application/json", last.body, last.length);
+	}
+	const char *error = partial_source_open(server, request->id, request->unwanted, &source);
+	if (!error && source.rows_done > 0) {
+		const enum pound_status status =
+		    partial_maker_soon(&server->partial_maker, &source, request->id, ended, &last);
+		const bool passing = !status || status == POUND_NOMEM || status == POUND_STOPPED;
+		*rows = last.rows;
+		reply = last.body ? made("application/json", last.body, last.length)
+		        : passing ? no_memory()
+		                  : problem(API_CONFLICT, "all runs so far failed, so there is no result yet");
+		last.body = NULL;
 	} else if (error)
-		reply = unopened(request, &opened, error);
+		reply = unopened(request, &source.opened, error);
 	else {
-		reply = problem(API_NOT_READY, sampled ? "no row of the design is complete yet"
-		                                       : "this study is not finished; only sensitivity "
-		                                         "studies have partial results");
+		reply = problem(API_NOT_READY, pound_study_sampled(source.study)
+		                                   ? "no row of the design is complete yet"
+		                                   : "this study is not finished; only sensitivity "
+		                                     "studies have partial results");
 		reply.retry_after = retry_after;
 	}
-	stored_run_close(&opened);
+	free(last.body);
+	partial_source_close(&source);
 	return reply;
 }
 
@@ -376,7 +372,7 @@ static struct reply or_so_far(struct request *request, struct reply json, int *r
 	const bool ended = json.status == 409, waits = json.status == 404 && json.retry_after > 0;
 	if ((!ended && !waits) || strcmp(http_argument(request, "partial"), "true") != 0)
 		return json;
-	struct reply reply = so_far(request, json.retry_after, rows);
+	struct reply reply = so_far(request, json.retry_after, ended, rows);
 	if (ended && reply.status == 404) {
 		free(reply.body);
 		return json;

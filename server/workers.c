@@ -60,6 +60,7 @@ struct job {
 	bool movable;                   /* worker groups may run its blocks */
 	struct coordinator_study known; /* as worker groups know it */
 	int n_out;                      /* blocks assigned to worker groups */
+	int n_views;                    /* of its run, which keep it in memory, but do not delay its end */
 	int reduction;                  /* the next to assign */
 	int n_reductions, reductions_left;
 	int n_inside;                  /* workers in one of its steps, plus finished blocks not yet committed */
@@ -196,7 +197,7 @@ static void finish_if_complete(struct work *work, struct job *job)
 	// worker groups may still have a block that was also run elsewhere: have them return it
 	if (job->n_out > 0)
 		coordinator_wake(work->coordinator);
-	else
+	else if (job->n_views == 0)
 		drop(work, job);
 }
 
@@ -264,26 +265,7 @@ static void *commit(void *of)
 	return NULL;
 }
 
-/* For the crash handler: the study that this thread works on, and the store that records it. */
-static _Thread_local volatile int64_t study_here;
-static const struct store *crash_store;
-
-static const int crashes[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-
-/* Records the study; then the default action of the signal follows. */
-static void crash(int signal)
-{
-	store_blame(crash_store, study_here);
-	raise(signal);
-}
-
-static void watch_crashes(const struct store *store)
-{
-	const struct sigaction action = {.sa_handler = crash, .sa_flags = (int)SA_RESETHAND};
-	crash_store = store;
-	for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++)
-		sigaction(crashes[i], &action, NULL);
-}
+#include "server/crashes.inl"
 
 struct step {
 	struct job *job;
@@ -547,6 +529,7 @@ static void *worker(void *of)
 }
 
 #include "server/groups.inl"
+#include "server/views.inl"
 
 /* Ends the studies that have reached the time limit; under the lock.
  *
@@ -690,6 +673,9 @@ bool work_stop(struct work *work)
 		return false;
 	if (work->watched)
 		pthread_join(work->watch, NULL);
+	TAILQ_FOREACH(job, &work->jobs, others)
+	if (job->n_views > 0)
+		return false;
 	while ((job = TAILQ_FIRST(&work->jobs)))
 		drop(work, job);
 	pthread_cond_destroy(&work->waits);

@@ -2,9 +2,11 @@
 #ifndef WORKERS_H
 #define WORKERS_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "engine/pound.h"
 #include "schema/message/launcher.h"
 #include "server/store.h"
 
@@ -15,8 +17,24 @@ struct work *work_start(struct store *store, int n_workers, double time_max, dou
                         int64_t memory_max, const struct launch *launch);
 int work_groups(const struct work *work);        /* worker groups that are connected */
 long work_group_blocks(const struct work *work); /* blocks that they have run */
-void work_wake(struct work *work);               /* a study was queued */
-void work_drop(struct work *work, int64_t id);   /* a study was cancelled or deleted */
+
+/* A view of a running study: a run of its own, which shares the values of the stored blocks. */
+struct work_view {
+	struct work *work;
+	struct job *job; /* NULL: the view is closed */
+	const struct pound_study *study;
+	struct pound_run *run;
+	int rows_done;  /* at the start of the design */
+	int n_reducers; /* threads that may reduce at once */
+};
+
+/* false: the study is not in memory, not sampled, or out of memory; else close it before work_stop, by work_unview */
+bool work_view(struct work *work, int64_t id, int n_reducers, const atomic_bool *stop,
+               struct work_view *view);
+void work_unview(struct work_view *view);
+
+void work_wake(struct work *work);             /* a study was queued */
+void work_drop(struct work *work, int64_t id); /* a study was cancelled or deleted */
 bool work_stop(
     struct work *work); /* unfinished studies stay in the store; false: a worker did not exit in time */
 

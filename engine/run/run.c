@@ -89,7 +89,7 @@ static size_t checks_size(const struct pound_cells *c)
 }
 
 /* Doubles that a worker keeps from one reduction to the next, at the start of its scratch. */
-static size_t kept_size(const struct pound_cells *c)
+size_t pound_run_kept_size(const struct pound_cells *c)
 {
 	const struct pound_sample_values shape = pound_cells_values(c, c->n_rows, NULL);
 	return pound_chaos_expansion_kept_size(&shape);
@@ -120,38 +120,38 @@ size_t pound_run_reduction_size(const struct pound_cells *c)
 	const size_t whole = 2 * pound_cells_values_size(c, c->n_rows) + checks_size(c) +
 	                     (most > ordinates ? most : ordinates),
 	             separation = pound_separation_scratch(c);
-	return kept_size(c) + (whole > separation ? whole : separation);
+	return pound_run_kept_size(c) + (whole > separation ? whole : separation);
 }
 
 /* Allocates scratch memory, 64-byte aligned; NULL: out of memory.  It is not zeroed, because a small study touches little of
  * it: only for users that write before they read. */
-static void *room(size_t bytes)
+void *pound_run_room(size_t bytes)
 {
 	return aligned_alloc(64, (bytes / 64 + 1) * 64);
 }
 
 /* Allocates zeroed memory, 64-byte aligned; NULL: out of memory. */
-static void *piece(size_t bytes)
+void *pound_run_piece(size_t bytes)
 {
-	void *memory = room(bytes);
+	void *memory = pound_run_room(bytes);
 	return memory ? memset(memory, 0, bytes) : NULL;
 }
 
 static bool workers_create(struct pound_run *run, int n_workers, struct pound_request_size largest)
 {
-	run->requests = piece(sizeof *run->requests * (size_t)(n_workers + 1)); // ends with NULL
-	run->scratch = piece(sizeof *run->scratch * (size_t)(n_workers + 1));
-	run->floors = piece(sizeof *run->floors * (size_t)(n_workers + 1));
+	run->requests = pound_run_piece(sizeof *run->requests * (size_t)(n_workers + 1)); // ends with NULL
+	run->scratch = pound_run_piece(sizeof *run->scratch * (size_t)(n_workers + 1));
+	run->floors = pound_run_piece(sizeof *run->floors * (size_t)(n_workers + 1));
 	if (!run->requests || !run->scratch || !run->floors)
 		return false;
 	const int tasks = largest.tasks + largest.rows.tasks;
 	size_t spectra = pound_ordinate_bytes(run->campaign.study, tasks);
 	for (int w = 0; w < n_workers; w++) {
-		void *memory = room(pound_request_bytes(largest));
+		void *memory = pound_run_room(pound_request_bytes(largest));
 		run->requests[w] = memory ? pound_request_init(memory, largest) : NULL;
 		// zeroed, because it begins with the factors of pound_chaos_expansion_kept_size()
-		run->scratch[w] = piece(sizeof(double) * pound_run_reduction_size(&run->campaign));
-		memory = spectra ? room(spectra) : NULL;
+		run->scratch[w] = pound_run_piece(sizeof(double) * pound_run_reduction_size(&run->campaign));
+		memory = spectra ? pound_run_room(spectra) : NULL;
 		run->floors[w] = memory ? pound_ordinate_init(memory, run->campaign.study, tasks) : NULL;
 		if (!run->requests[w] || !run->scratch[w] || (spectra && !memory))
 			return false;
@@ -183,7 +183,7 @@ void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[P
 	memcpy(parts, all, sizeof all);
 }
 
-static bool result_create(struct pound_run *run)
+bool pound_run_result_create(struct pound_run *run)
 {
 	const struct pound_cells *c = &run->campaign;
 	const struct pound_study *study = c->study;
@@ -192,7 +192,7 @@ static bool result_create(struct pound_run *run)
 	run->result.n_cells = c->n_cells;
 	pound_run_result_parts(run, parts);
 	for (int j = 0; j < POUND_RUN_PARTS; j++)
-		if (!(*(void **)parts[j].into = piece(parts[j].bytes)))
+		if (!(*(void **)parts[j].into = pound_run_piece(parts[j].bytes)))
 			return false;
 	pound_ordinate_layout(study, run->spectra, &run->result.floor);
 	pound_separation_layout(c, run->separation, &run->result.separation);
@@ -220,7 +220,7 @@ static bool result_create(struct pound_run *run)
 
 static bool suite_scale(struct pound_run *run, const atomic_bool *stop)
 {
-	void *scratch = piece(pound_run_scale_bytes(run->campaign.study)); // temporary
+	void *scratch = pound_run_piece(pound_run_scale_bytes(run->campaign.study)); // temporary
 	const bool scaled = scratch && pound_run_scale(run, scratch, stop);
 	free(scratch);
 	return scaled;
@@ -231,7 +231,7 @@ static bool pilot_run(struct pound_run *run, const atomic_bool *stop)
 {
 	const struct pound_study study = pound_pilot_study(&run->study);
 	struct pound_run *pilot = pound_run_create_by(&study, 1, stop);
-	double *scratch = pilot ? room(sizeof *scratch * pound_pilot_scratch(pilot)) : NULL;
+	double *scratch = pilot ? pound_run_room(sizeof *scratch * pound_pilot_scratch(pilot)) : NULL;
 	if (pilot && stop)
 		pilot->stop = stop;
 	const bool done = scratch && !pound_pilot_run(run, pilot, scratch);
@@ -254,7 +254,7 @@ struct pound_run *pound_run_create(const struct pound_study *study, int n_worker
 struct pound_run *pound_run_create_by(const struct pound_study *study, int n_workers, const atomic_bool *stop)
 {
 	assert(n_workers >= 1);
-	struct pound_run *run = piece(sizeof *run);
+	struct pound_run *run = pound_run_piece(sizeof *run);
 	if (!run)
 		return NULL;
 	run->stop = &run->stopped;
@@ -266,9 +266,9 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 	run->rows = pound_study_sampled(study) ? pound_design_rows(study, 0) : run->campaign.n_rows;
 	run->layout = pound_run_layout(&run->campaign);
 	size_t n_design = 2 * (size_t)run->campaign.n_rows * (size_t)study->n_inputs;
-	double *design = piece(sizeof(double) * n_design);
+	double *design = pound_run_piece(sizeof(double) * n_design);
 	run->campaign.design = design;
-	run->u = piece(sizeof(double) * n_design);
+	run->u = pound_run_piece(sizeof(double) * n_design);
 	if (!design || !run->u)
 		goto fail;
 	if (pound_study_sampled(study)) {
@@ -279,12 +279,12 @@ struct pound_run *pound_run_create_by(const struct pound_study *study, int n_wor
 		goto fail;
 	struct pound_request_size largest = {0};
 	run->layout.n_blocks = pound_blocks_cut(&run->campaign, NULL, &largest);
-	run->layout.first = piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
+	run->layout.first = pound_run_piece(sizeof *run->layout.first * (size_t)(run->layout.n_blocks + 1));
 	if (!run->layout.first || pound_stopped(stop))
 		goto fail;
 	pound_blocks_cut(&run->campaign, run->layout.first, &largest);
-	run->layout.values = piece(sizeof(double) * pound_blocks_doubles(&run->layout));
-	if (!run->layout.values || !workers_create(run, n_workers, largest) || !result_create(run) ||
+	run->layout.values = pound_run_piece(sizeof(double) * pound_blocks_doubles(&run->layout));
+	if (!run->layout.values || !workers_create(run, n_workers, largest) || !pound_run_result_create(run) ||
 	    !suite_scale(run, stop))
 		goto fail;
 	return run;
@@ -297,6 +297,10 @@ void pound_run_free(struct pound_run *run)
 {
 	if (!run)
 		return;
+	if (run->view) {
+		run->campaign.design = run->u = run->layout.values = NULL;
+		run->layout.first = NULL;
+	}
 	for (int w = 0; run->requests && run->requests[w]; w++)
 		free(run->requests[w]);
 	for (int w = 0; run->scratch && run->scratch[w]; w++)
@@ -490,16 +494,18 @@ int64_t pound_run_columns(const struct pound_run *run, int cell, int output, dou
 	const struct pound_cells *c = &run->campaign;
 	int64_t failed = 0;
 	for (int row = 0; row < run->rows && !pound_stopped(run->stop); row++)
-		for (int signal = 0; signal < c->n_signals; signal++)
-			for (int sample = 0; sample < c->n_samples; sample++) {
-				const double *values =
-				    pound_blocks_run(&run->layout, row * c->n_signals + signal, cell, sample) + 2 * output;
+		for (int signal = 0; signal < c->n_signals; signal++) {
+			// the samples of an item are one after the other: one search for its block
+			const double *values =
+			    pound_blocks_run(&run->layout, row * c->n_signals + signal, cell, 0) + 2 * output;
+			for (int sample = 0; sample < c->n_samples; sample++, values += run->layout.n_measures) {
 				size_t at = ((size_t)row * (size_t)c->n_samples + (size_t)sample) * (size_t)c->n_signals +
 				            (size_t)signal;
 				numerator[at] = values[0];
 				denominator[at] = values[1];
 				failed += isnan(values[0]) || (isnan(values[1]) && !pound_cells_means(c));
 			}
+		}
 	return failed;
 }
 
@@ -546,7 +552,7 @@ struct pound_sampling pound_run_sampling(const struct pound_run *run)
 static void indices_reduce(struct pound_run *run, int cell, int output, double *kept)
 {
 	const struct pound_cells *c = &run->campaign;
-	double *scratch = kept + kept_size(c);
+	double *scratch = kept + pound_run_kept_size(c);
 	struct pound_sample_values values = pound_cells_values(c, run->rows, scratch);
 	values.stop = run->stop;
 	const size_t n = pound_cells_values_size(c, run->rows);
@@ -651,8 +657,8 @@ enum pound_status pound_run_reduce(struct pound_run *run, int reduction, int wor
 	else if (run->campaign.study->kind == POUND_KIND_FLOOR_SPECTRUM)
 		pound_ordinate_reduce(run, run->scratch[worker], &run->result.floor);
 	else if (run->campaign.study->kind == POUND_KIND_SEPARATION && reduction == pound_run_reductions(run) - 1)
-		pound_separation_reduce(run,
-		                        run->scratch[worker] + (has_indices(run) ? kept_size(&run->campaign) : 0));
+		pound_separation_reduce(run, run->scratch[worker] +
+		                                 (has_indices(run) ? pound_run_kept_size(&run->campaign) : 0));
 	else if (has_indices(run))
 		indices_reduce(run, reduction / n_outputs, reduction % n_outputs, run->scratch[worker]);
 	else

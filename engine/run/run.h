@@ -11,6 +11,7 @@ struct pound_run {
 	struct pound_cells campaign;
 	struct pound_blocks layout;
 	int rows;                        /* current: of the look, or of an intermediate result */
+	bool view;                       /* design, probabilities and blocks belong to another run */
 	struct pound_request **requests; /* (n_workers) */
 	double **scratch;                /* for reductions  (n_workers) */
 	struct pound_ordinates **floors; /* (n_workers); entries NULL: no spectra requested */
@@ -32,13 +33,20 @@ struct pound_run {
 /* The layout, before anything is allocated. */
 struct pound_cells pound_run_campaign(const struct pound_study *study);
 struct pound_blocks pound_run_layout(const struct pound_cells *campaign);
-size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch */
+size_t pound_run_reduction_size(const struct pound_cells *campaign); /* doubles of a worker's scratch, ... */
+size_t
+pound_run_kept_size(const struct pound_cells *campaign); /* ... of which the first are zero at the start */
+
+/* Memory on the heap, 64-byte aligned, and the same zeroed; NULL: out of memory. */
+void *pound_run_room(size_t bytes);
+void *pound_run_piece(size_t bytes);
 
 enum { POUND_RUN_PARTS = 11 };
 struct pound_run_part {
 	void *into; /* address of the pointer to it */
 	size_t bytes;
 };
+bool pound_run_result_create(struct pound_run *run); /* false: out of memory */
 void pound_run_result_parts(struct pound_run *run, struct pound_run_part parts[POUND_RUN_PARTS]);
 
 /* Suites of records: whether a result lists the record of each signal; scaling of the records, false: stop was set; the list of

@@ -116,11 +116,38 @@ int pound_run_rows_done(const struct pound_run *run, const bool *done)
 	return run->layout.first[blocks] / run->campaign.n_signals;
 }
 
+/* Rows of an intermediate result that is made soon whatever the size of the design: its indices are made from so many outputs
+ * of samples, which take about a tenth of a second, but from as many rows as all indices need.
+ *
+ * Returns  value   at most the rows of the design
+ * Test     unit_growth: an_intermediate_result_that_is_made_soon_has_a_limit_of_its_work
+ */
+int pound_run_rows_quick(const struct pound_run *run)
+{
+	const struct pound_cells *c = &run->campaign;
+	const int64_t of_row = (int64_t)c->n_cells * c->study->n_outputs * c->n_samples;
+	const int rows = of_row > 0 ? (int)(POUND_VALUES_QUICK / of_row) : c->n_rows;
+	const int enough = rows > POUND_ROWS_MIN ? rows : POUND_ROWS_MIN;
+	return enough < c->n_rows ? enough : c->n_rows;
+}
+
 /* Restricts the following reductions and the result to the first rows of the design. */
 void pound_run_rows_take(struct pound_run *run, int rows)
 {
 	assert(pound_study_sampled(run->campaign.study) && rows <= run->campaign.n_rows);
 	run->rows = rows;
+	run->result.rows_done = rows;
+}
+
+/* Of how many complete rows the result has the first.
+ *
+ * Given    run     rows taken
+ *          rows    complete, at least as many as were taken
+ */
+void pound_run_rows_complete(struct pound_run *run, int rows)
+{
+	assert(rows >= run->rows);
+	run->result.rows_done = rows;
 }
 
 int pound_run_rows(const struct pound_run *run)

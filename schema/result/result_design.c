@@ -189,10 +189,16 @@ void result_design(struct writer *w, const struct pound_study *asked, const stru
 		writer_text(w, "note", note);
 	writer_end(w);
 	if (partial(study, result)) {
+		const bool all = result->rows_done <= result->rows;
 		writer_object(w, "partial", WRITER_LINE);
 		writer_whole(w, "rows", result->rows);
 		writer_whole(w, "rows_most", pound_design_rows_most(study));
-		writer_text(w, "note", "result of the rows completed so far, not of the whole study");
+		writer_whole(w, "rows_done", all ? result->rows : result->rows_done);
+		writer_text(
+		    w, "note",
+		    all ? "result of the rows completed so far, not of the whole study"
+		        : "result of the first rows, so that it comes at once; the result of all rows completed "
+		          "so far is being made: ask again in a few seconds");
 		writer_end(w);
 	} else if (result->n_looks || result->split.signals) {
 		writer_object(w, "stopping", WRITER_LINES);

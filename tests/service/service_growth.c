@@ -1,6 +1,8 @@
 /* service_growth.c - studies that grow until their intervals are narrow, and results of the rows so far, in a real server. */
 #include <string.h>
 
+#include "engine/pound.h"
+#include "schema/examples/examples.h"
 #include "schema/json/json_pointer.h"
 #include "server/partial_results.h"
 #include "tests/support/service.h"
@@ -168,7 +170,8 @@ static void a_running_study_answers_with_the_indices_of_its_whole_rows(void **st
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=closed", id, 200);
 	assert_string_equal(answer.type, "text/csv");
-	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,output.name,input_1,", 51);
+	assert_memory_equal(answer.body, "partial.rows,partial.rows_most,partial.rows_done,output.name,input_1,",
+	                    69);
 	answer_free(&answer);
 	answer = answer_of(service, "/v1/studies/%s/results?partial=true&table=stopping", id, 409);
 	assert_non_null(strstr(answer.body, "this result has no table \\\"stopping\\\""));
@@ -225,36 +228,99 @@ static void a_cancelled_study_keeps_the_results_of_its_whole_rows(void **state)
 	free(study);
 }
 
+static double values_asked(const struct service *service)
+{
+	static const char line[] = "\npound_partial_values_total ";
+	struct answer answer = service_get(service, "/metrics");
+	const char *at = strstr(answer.body, line);
+	assert_non_null(at);
+	const double value = strtod(at + strlen(line), NULL);
+	answer_free(&answer);
+	return value;
+}
+
+/* How long a request takes is bounded by the values that it makes indices of; the result of all rows is made aside, once. */
+static void the_first_results_so_far_of_a_large_study_are_made_of_few_rows(void **state)
+{
+	enum { CELLS = 24, OUTPUTS = 3, SAMPLES = 6, OF_ROW = CELLS * OUTPUTS * SAMPLES };
+	struct service *service = *state;
+	// the campaign of the paper, with one signal for each run: some 4 s on two cores
+	char *study = study_documents_with(example_text("paper"), "\"rows\": 1000, \"seed\": 42",
+	                                   "\"rows\": 2000, \"seed\": 42"),
+	     *short_runs = study_documents_with(study, "\"peak_m_s2\": 1, \"signals\": 5",
+	                                        "\"peak_m_s2\": 1, \"signals\": 1"),
+	     id[17];
+	service_submit(service, short_runs, id);
+	const int quick = POUND_VALUES_QUICK / OF_ROW;
+	while (status_number(service, id, "/progress") < 0.1)
+		;
+	struct answer answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
+	struct reading *result = answer_read(&answer);
+	const double rows = reading_number(result, "/partial/rows"),
+	             done = reading_number(result, "/partial/rows_done");
+	assert_int_equal((int)rows, quick);
+	assert_true(done > rows);
+	assert_non_null(strstr(reading_text(result, "/partial/note"), "ask again"));
+	assert_int_equal((int)values_asked(service), quick * OF_ROW);
+	assert_true(quick * OF_ROW <= POUND_VALUES_QUICK);
+	reading_close(result);
+	double later = rows;
+	while (later == rows) {
+		answer_free(&answer);
+		answer = answer_of(service, "/v1/studies/%s/results?partial=true", id, 200);
+		result = answer_read(&answer);
+		later = reading_number(result, "/partial/rows");
+		if (later > rows)
+			assert_true(later >= done && later == reading_number(result, "/partial/rows_done"));
+		reading_close(result);
+	}
+	assert_int_equal((int)values_asked(service), quick * OF_ROW);
+	check_report("the first results so far have %.0f of %.0f complete rows, later ones %.0f", rows, done,
+	             later);
+	answer_free(&answer);
+	cancel(service, id);
+	free(short_runs);
+	free(study);
+}
+
 static void results_so_far_come_at_once_when_asked_for_again(void **state)
 {
 	(void)state;
 	static char text[] = "a result";
 	struct partial_results results = {.lock = PTHREAD_MUTEX_INITIALIZER};
-	struct partial_result made = {.id = 7, .rows = 5, .body = text, .length = strlen(text)};
-	size_t length;
-	int rows;
-	assert_null(partial_results_take(&results, 7, &length, &rows));
+	struct partial_result made = {.id = 7, .rows = 5, .body = text, .length = strlen(text)}, copy;
+	assert_false(partial_results_take(&results, 7, &copy));
+	assert_null(copy.body);
 	partial_results_give(&results, &made, 10.0);
-	assert_null(partial_results_take(&results, 8, &length, &rows));
-	char *again = partial_results_take(&results, 7, &length, &rows);
-	assert_string_equal(again, text);
-	assert_int_equal(length, strlen(text));
-	assert_int_equal(rows, 5);
-	free(again);
-	// a later result of the study replaces it; here it has expired already
+	assert_false(partial_results_take(&results, 8, &copy));
+	assert_null(copy.body);
+	assert_true(partial_results_take(&results, 7, &copy));
+	assert_string_equal(copy.body, text);
+	assert_int_equal(copy.length, strlen(text));
+	assert_int_equal(copy.rows, 5);
+	free(copy.body);
+	// one of fewer rows does not replace it
+	made.rows = 4;
+	partial_results_give(&results, &made, 0.0);
+	assert_true(partial_results_take(&results, 7, &copy));
+	assert_int_equal(copy.rows, 5);
+	free(copy.body);
+	// a later result of the study does; here it is not fresh any more
 	made.rows = 6;
 	partial_results_give(&results, &made, -1.0);
-	assert_null(partial_results_take(&results, 7, &length, &rows));
+	assert_false(partial_results_take(&results, 7, &copy));
+	assert_int_equal(copy.rows, 6);
+	free(copy.body);
 	// the result that expires first is replaced
 	for (int k = 0; k <= PARTIAL_RESULTS; k++) {
 		made.id = 100 + k;
 		partial_results_give(&results, &made, 10.0 + k);
 	}
-	assert_null(partial_results_take(&results, 100, &length, &rows));
+	assert_false(partial_results_take(&results, 100, &copy));
+	assert_null(copy.body);
 	for (int k = 1; k <= PARTIAL_RESULTS; k++) {
-		char *kept = partial_results_take(&results, 100 + k, &length, &rows);
-		assert_non_null(kept);
-		free(kept);
+		assert_true(partial_results_take(&results, 100 + k, &copy));
+		free(copy.body);
 	}
 	partial_results_free(&results);
 }
@@ -286,5 +352,6 @@ CHECK_MAIN(
     cmocka_unit_test(samples_of_a_design_that_grew_are_all_of_them_or_an_error),
     SERVED(a_running_study_answers_with_the_indices_of_its_whole_rows),
     SERVED(a_cancelled_study_keeps_the_results_of_its_whole_rows),
+    SERVED(the_first_results_so_far_of_a_large_study_are_made_of_few_rows),
     cmocka_unit_test(results_so_far_come_at_once_when_asked_for_again),
     SERVED(a_study_without_a_row_has_no_results_yet))

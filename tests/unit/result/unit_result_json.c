@@ -439,6 +439,7 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	assert_false(reading_has(r, "/stopping"));
 	check_near(reading_number(r, "/partial/rows"), 1000, 0);
 	check_near(reading_number(r, "/partial/rows_most"), 1500, 0);
+	check_near(reading_number(r, "/partial/rows_done"), 1000, 0);
 	assert_string_equal(reading_text(r, "/design/method"), "lhs");
 	reading_close(r);
 	result.rows = 1200;

@@ -323,6 +323,82 @@ static void an_intermediate_result_has_whole_rows_only(void **state)
 	free(done);
 }
 
+/* The reductions of a view come between the blocks of its run, and change nothing of the run's result. */
+static void a_view_has_the_result_of_its_rows_while_the_run_goes_on(void **state)
+{
+	(void)state;
+	struct pound_study *study = study_with("\"method\": \"random\", \"rows\": 150");
+	struct pound_run *run = pound_run_create(study, 1);
+	const int n_blocks = pound_run_blocks(run);
+	bool *done = calloc((size_t)pound_run_blocks_most(run), sizeof *done);
+	for (int b = 0; b < n_blocks / 2; b++) {
+		assert_int_equal(pound_run_block(run, b, 0), POUND_OK);
+		done[b] = true;
+	}
+	struct pound_run *view = pound_run_view(run, 2, NULL);
+	const int rows = pound_run_rows_done(run, done), few = rows / 2;
+	assert_true(few >= 30);
+	pound_run_rows_take(view, few);
+	pound_run_rows_complete(view, rows);
+	for (int k = 0; k < pound_run_reductions(view); k++) {
+		assert_int_equal(pound_run_reduce(view, k, k % 2), POUND_OK);
+		if (n_blocks / 2 + k < n_blocks)
+			assert_int_equal(pound_run_block(run, n_blocks / 2 + k, 0), POUND_OK);
+	}
+	for (int b = n_blocks / 2 + pound_run_reductions(view); b < n_blocks; b++)
+		assert_int_equal(pound_run_block(run, b, 0), POUND_OK);
+	const struct pound_result *result = pound_run_result(view);
+	assert_int_equal(result->rows, few);
+	assert_int_equal(result->rows_done, rows);
+	struct pound_study *shorter = study_with("\"method\": \"random\", \"rows\": 150");
+	shorter->design.rows = few;
+	struct pound_run *first = specimen_run(shorter), *whole = specimen_run(study);
+	check_same_indices(study, result, pound_run_result(first));
+	// the view is gone, and what it shared is not
+	pound_run_free(view);
+	for (int k = 0; k < pound_run_reductions(run); k++)
+		assert_int_equal(pound_run_reduce(run, k, 0), POUND_OK);
+	assert_int_equal(pound_run_result(run)->rows, 150);
+	check_same_indices(study, pound_run_result(run), pound_run_result(whole));
+	pound_run_free(run), pound_run_free(first), pound_run_free(whole);
+	study_free(study), study_free(shorter);
+	free(done);
+}
+
+static void an_intermediate_result_that_is_made_soon_has_a_limit_of_its_work(void **state)
+{
+	(void)state;
+	static const int designs[] = {20, 150, 200000};
+	for (size_t k = 0; k < sizeof designs / sizeof designs[0]; k++) {
+		struct pound_study *study = study_with("\"method\": \"random\", \"rows\": 20");
+		study->design.rows = designs[k];
+		struct pound_run *run = pound_run_create(study, 1);
+		const int of_row = pound_run_reductions(run) * pound_run_samples(run),
+		          rows = pound_run_rows_quick(run);
+		if (designs[k] * of_row <= POUND_VALUES_QUICK)
+			assert_int_equal(rows, designs[k]);
+		else
+			assert_in_range(rows * of_row, POUND_VALUES_QUICK - of_row, POUND_VALUES_QUICK);
+		pound_run_free(run);
+		study_free(study);
+	}
+	// so many cells that the rows which all indices need are more work: 700 cells of 6 samples
+	enum { CELLS = 700 };
+	double values[CELLS];
+	struct pound_study *study = study_with("\"method\": \"random\", \"rows\": 40");
+	for (int v = 0; v < CELLS; v++)
+		values[v] = 1.0 + 0.001 * v;
+	assert_true(study->n_sweeps > 0);
+	struct pound_sweep sweep = study->sweeps[0];
+	study->sweeps[0].values = values;
+	study->sweeps[0].n_values = CELLS;
+	struct pound_run *run = pound_run_create(study, 1);
+	assert_int_equal(pound_run_rows_quick(run), 30);
+	pound_run_free(run);
+	study->sweeps[0] = sweep;
+	study_free(study);
+}
+
 /* Studies of the same shape one after another, in memory that is reused without being cleared. */
 static void a_study_finds_nothing_of_the_one_before_it_in_memory(void **state)
 {
@@ -429,4 +505,6 @@ CHECK_MAIN(cmocka_unit_test(a_design_stops_when_the_order_of_the_inputs_is_certa
            cmocka_unit_test(a_grown_sobol_design_has_the_indices_of_one_of_that_size_from_the_start),
            cmocka_unit_test(intervals_cover_where_a_design_has_stopped),
            cmocka_unit_test(a_block_ends_where_the_design_is_looked_at),
-           cmocka_unit_test(an_intermediate_result_has_whole_rows_only))
+           cmocka_unit_test(an_intermediate_result_has_whole_rows_only),
+           cmocka_unit_test(a_view_has_the_result_of_its_rows_while_the_run_goes_on),
+           cmocka_unit_test(an_intermediate_result_that_is_made_soon_has_a_limit_of_its_work))
