@@ -630,7 +630,7 @@ static void below_find(const struct summary *summary, struct paragraphs *below)
 	for (int k = 0; k < 2; k++)
 		if (sentences[k])
 			paragraph_add(below, sentences[k]);
-	if (note && dominant && strcmp(dominant, "sampling") != 0)
+	if (note && !(dominant && strcmp(dominant, "sampling") == 0))
 		paragraph_add(below, command_text("%s", note));
 	widest_interval_find(result, &widest);
 	if (*widest.size)
