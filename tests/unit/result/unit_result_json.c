@@ -268,6 +268,13 @@ static void undefined_indices_are_null_and_say_why(void **state)
 	    reading_text(r, "/cells/0/outputs/1/note"),
 	    "all rows of the design failed, so there are no indices; without the noise the variance may be 0, "
 	    "so all indices except the raw ones are missing or unreliable");
+	// each note has a name that programs can rely on
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/notes/0/name"), "constant");
+	assert_int_equal(reading_count(r, "/cells/0/outputs/1/notes"), 2);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/0/name"), "no_rows");
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/1/name"), "noise");
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/0/text"),
+	                    "all rows of the design failed, so there are no indices");
 	reading_close(r);
 }
 
@@ -310,6 +317,10 @@ static void all_there_is_to_say_has_room(void **state)
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
 	assert_string_equal(strrchr(note, ';'), "; few rows hold most of the variance, so intervals are too "
 	                                        "narrow: 1200 rows or more are needed");
+	assert_int_equal(reading_count(r, "/cells/0/outputs/0/notes"), POUND_N_NOTES);
+	check_near(reading_number(r, "/cells/0/outputs/0/notes/%d/rows_needed", POUND_NOTE_FEW_DECIDE), 1200, 0);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/notes/%d/name", POUND_NOTE_FEW_DECIDE),
+	                    "few_decide");
 	reading_close(r);
 }
 
