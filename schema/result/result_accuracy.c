@@ -26,7 +26,7 @@ static void write_undecided(struct writer *w, const struct pound_study *study, c
 	    "Whether more rows or more %s would narrow the widest interval cannot be told apart with so few %s: "
 	    "their noise makes up between %s and %.2g of its half-width of %.2g%s%s%s.",
 	    noise, noise, least, high, errors->of[POUND_ERROR_SAMPLING], *index ? ", of " : "", index,
-	    study->elsewhere ? "" : "; \"signals\": \"auto\" finds out");
+	    study->elsewhere ? "" : "; design.signals = auto finds out");
 	writer_text(w, "note", note);
 }
 
