@@ -358,7 +358,7 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
 	             half_width = quantile * error;
 	if (basis)
 		*basis = (struct basis){pound_jackknife_rows(columns->influence, n_rows), error,
-		                         influence_of(&r, ratio, below)};
+		                        influence_of(&r, ratio, below)};
 	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
 }
 

@@ -238,7 +238,7 @@ static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 {
 	(void)state;
-	static const double shares[] = {1e-4, 4};
+	static const double shares[] = {1e-4, 20};
 	for (int k = 0; k < 2; k++) {
 		struct pound_sample_values values = function_values(
 		    function_named("ishigami"), 800, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
