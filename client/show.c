@@ -83,34 +83,47 @@ static void print_modes(const struct reading *result, const char *at)
 	table_close(table);
 }
 
-/* The storeys of a row and the floors above them, as means over the signals; the JSON has each signal. */
+/* Mean over the signals of the size of a member of a story or the floor above it; `place`: its JSON Pointer in a signal. */
+static double mean_of(const struct reading *result, const char *at, const char *place, const char *name)
+{
+	const int n = reading_count(result, "%s/signals", at);
+	double sum = 0;
+	for (int s = 0; s < n; s++)
+		sum += fabs(reading_number(result, "%s/signals/%d/%s/%s", at, s, place, name));
+	return sum / n;
+}
+
+/* The storeys of a row and the floors above them, as means over the signals; the JSON has each signal.  Stories that never yield
+ * have no demand, and no column of it if none does; likewise the residual drift if it is 0 everywhere. */
 static void print_storeys(const struct reading *result, const char *at)
 {
-	static const char *const columns[] = {"building", "story",    "drift_m", "free_m", "drift/h",
-	                                      "shear_n",  "residual", "a_m_s2",  "a_free", NULL};
+	static const char *const columns[] = {"building", "story",   "drift_m", "free_m", "drift/h", "demand",
+	                                      "residual", "shear_n", "a_m_s2",  "a_free", NULL};
 	static const struct {
 		const char *list, *name;
-	} members[] = {{"storeys", "drift_max_m"},
-	               {"storeys", "drift_max_free_m"},
-	               {"storeys", "drift_ratio_max"},
-	               {"storeys", "shear_max_n"},
-	               {"storeys", "residual_drift_m"},
-	               {"floors", "acceleration_max_m_s2"},
-	               {"floors", "acceleration_max_free_m_s2"}};
-	const int n = reading_count(result, "%s/signals", at);
+	} members[] = {{"storeys", "drift_max_m"},          {"storeys", "drift_max_free_m"},
+	               {"storeys", "drift_ratio_max"},      {"storeys", "demand"},
+	               {"storeys", "residual_drift_m"},     {"storeys", "shear_max_n"},
+	               {"floors", "acceleration_max_m_s2"}, {"floors", "acceleration_max_free_m_s2"}};
+	enum { RESIDUAL = 4 };
+	bool rests = false;
+	char place[64];
 	struct table *table = table_open(2, columns);
-	for (int b = 0; b < reading_count(result, "%s/signals/0/buildings", at); b++)
-		for (int i = 0; i < reading_count(result, "%s/signals/0/buildings/%d/storeys", at, b); i++) {
-			table_number(table, b);
-			table_number(table, i + 1);
-			for (size_t m = 0; m < sizeof members / sizeof members[0]; m++) {
-				double sum = 0;
-				for (int s = 0; s < n; s++)
-					sum += fabs(reading_number(result, "%s/signals/%d/buildings/%d/%s/%d/%s", at, s, b,
-					                           members[m].list, i, members[m].name));
-				table_number(table, sum / n);
+	for (int pass = 0; pass < 2; pass++)
+		for (int b = 0; b < reading_count(result, "%s/signals/0/buildings", at); b++)
+			for (int i = 0; i < reading_count(result, "%s/signals/0/buildings/%d/storeys", at, b); i++) {
+				snprintf(place, sizeof place, "buildings/%d/%s/%d", b, members[RESIDUAL].list, i);
+				rests |= mean_of(result, at, place, members[RESIDUAL].name) > 0;
+				if (pass == 0)
+					continue;
+				table_number(table, b);
+				table_number(table, i + 1);
+				for (int m = 0; m < (int)(sizeof members / sizeof members[0]); m++) {
+					snprintf(place, sizeof place, "buildings/%d/%s/%d", b, members[m].list, i);
+					const double mean = mean_of(result, at, place, members[m].name);
+					table_number(table, m == RESIDUAL && !rests ? NAN : mean);
+				}
 			}
-		}
 	putchar('\n');
 	table_prose(0, "stories, each with the floor above it: peak values, means over the signals");
 	table_print(table, 2);
@@ -530,7 +543,17 @@ static bool print_kind(const struct reading *result, const char *kind)
 	return false;
 }
 
-/* Reads the header of CSV.  n_keys: number of leading columns that identify a line (sweep paths, contact). */
+/* Whether a column of a named table identifies its line. */
+static bool is_key(const char *head)
+{
+	static const char *const keys[] = {"contact", "signal", "building", "storey", "mode"};
+	for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++)
+		if (strcmp(head, keys[k]) == 0)
+			return true;
+	return head[0] == '/';
+}
+
+/* Reads the header of CSV.  n_keys: number of leading columns that identify a line (sweep paths, signal, place). */
 static int heads_of(const char *csv, const char *end, char heads[CSV_COLUMNS + 1][CSV_CELL],
                     const char *names[CSV_COLUMNS + 1], int *n_keys)
 {
@@ -539,8 +562,7 @@ static int heads_of(const char *csv, const char *end, char heads[CSV_COLUMNS + 1
 	for (*n_keys = 0; sign == ',' && n < CSV_COLUMNS; n++) {
 		csv += result_csv_cell(csv, end, heads[n], CSV_CELL, &sign);
 		names[n] = heads[n];
-		bool key = heads[n][0] == '/' || strcmp(heads[n], "contact") == 0;
-		*n_keys += key && *n_keys == n;
+		*n_keys += is_key(heads[n]) && *n_keys == n;
 	}
 	names[n] = NULL;
 	return n;
@@ -578,6 +600,14 @@ static bool print_named(const struct reading *result, const char *json, size_t l
 	size_t n;
 	if (indices_print_table(result, name))
 		return true;
+	// a line of a signal has a column for each number of each story and contact, too many for a screen
+	const char *first = reading_has(result, "/cells") ? "/cells/0" : "";
+	if (strcmp(name, "signals") == 0 && reading_has(result, "%s/signals/0/buildings", first)) {
+		table_prose(0, "stories and the floors above them, of each signal");
+		print_named(result, json, length, "storeys");
+		puts("\ncontacts, of each signal");
+		return print_named(result, json, length, "contacts");
+	}
 	char *csv = command_sure(result_to_csv(json, length, name, &n));
 	if (n > 0)
 		print_csv(csv, csv + n);

@@ -217,15 +217,14 @@ static void print_estimate(const struct reading *result, const char *input, cons
 		printf("  %s %s %7s", index, rounded, "");
 }
 
-// first words of the note of an output whose intervals are too narrow (engine/result.h: POUND_NOTE_FEW_DECIDE)
-static const char FEW_ROWS[] = "few rows hold";
-
-/* Rows needed for reliable intervals, read from the note of the output; NAN: the present rows are enough. */
+/* Rows needed for reliable intervals, of the note of the output that its intervals are too narrow; NAN: the present rows are
+ * enough. */
 static double rows_needed(const struct reading *result, const char *output)
 {
-	const char *note = reading_text(result, "%s/note", output), *few = note ? strstr(note, FEW_ROWS) : NULL;
-	const char *colon = few ? strchr(few, ':') : NULL;
-	return colon ? strtod(colon + 1, NULL) : NAN;
+	for (int k = 0; k < reading_count(result, "%s/notes", output); k++)
+		if (reading_has(result, "%s/notes/%d/rows_needed", output, k))
+			return reading_number(result, "%s/notes/%d/rows_needed", output, k);
+	return NAN;
 }
 
 /* "impulse: mean 0.89, noise 4 %"; the caller frees it. */
@@ -560,22 +559,24 @@ static char *tables_of(const struct reading *result)
 	return line;
 }
 
-/* A note of an output without its sentences on few rows, which too_narrow reports, and on indices that the summary does not
+/* The notes of an output without the note on few rows, which too_narrow reports, and the note on indices that the summary does not
  * show; the caller frees it.  NULL: nothing is left. */
-static char *note_shown(const char *note)
+static char *notes_shown(const struct reading *result, const char *output)
 {
-	static const char *const left_out[] = {FEW_ROWS, "S2_excitation"};
+	static const char *const left_out[] = {"few_decide", "fresh_signals"};
+	// indices of given samples have one note without names
+	const char *note = reading_text(result, "%s/note", output);
 	char *shown = NULL;
-	while (note && *note) {
-		const char *next = strstr(note, "; ");
-		const int length = next ? (int)(next - note) : (int)strlen(note);
-		bool out = false;
-		for (size_t k = 0; k < sizeof left_out / sizeof left_out[0]; k++)
-			out |= strncmp(note, left_out[k], strlen(left_out[k])) == 0;
+	if (note && !reading_has(result, "%s/notes", output))
+		return command_text("%s", note);
+	for (int k = 0; k < reading_count(result, "%s/notes", output); k++) {
+		const char *name = reading_text(result, "%s/notes/%d/name", output, k),
+		           *text = reading_text(result, "%s/notes/%d/text", output, k);
+		bool out = !name || !text;
+		for (size_t i = 0; i < sizeof left_out / sizeof left_out[0] && !out; i++)
+			out = strcmp(name, left_out[i]) == 0;
 		if (!out)
-			shown =
-			    shown ? command_append(shown, "; %.*s", length, note) : command_text("%.*s", length, note);
-		note = next ? next + 2 : NULL;
+			shown = shown ? command_append(shown, "; %s", text) : command_text("%s", text);
 	}
 	return shown;
 }
@@ -598,8 +599,10 @@ static char *notes_of(const struct reading *result)
 	int others = 0;
 	for (int c = 0; c < reading_count(result, "/cells"); c++)
 		for (int o = 0; o < reading_count(result, "/cells/%d/outputs", c); o++) {
-			char *note = note_shown(reading_text(result, "/cells/%d/outputs/%d/note", c, o));
-			const char *name = reading_text(result, "/cells/%d/outputs/%d/name", c, o);
+			char output[PATH_SIZE / 2];
+			snprintf(output, sizeof output, "/cells/%d/outputs/%d", c, o);
+			char *note = notes_shown(result, output);
+			const char *name = reading_text(result, "%s/name", output);
 			if (note && !first) {
 				first = note;
 				names = command_text("%s", name);
@@ -630,7 +633,7 @@ static void below_find(const struct summary *summary, struct paragraphs *below)
 	for (int k = 0; k < 2; k++)
 		if (sentences[k])
 			paragraph_add(below, sentences[k]);
-	if (note && dominant && strcmp(dominant, "sampling") != 0)
+	if (note && !(dominant && strcmp(dominant, "sampling") == 0))
 		paragraph_add(below, command_text("%s", note));
 	widest_interval_find(result, &widest);
 	if (*widest.size)

@@ -22,6 +22,7 @@ struct pound_given {
 	/* of a complete factorial design, by pound_given_inputs: all combinations of the levels, equally often */
 	int replicates;               /* rows of each combination; 0: not a factorial design */
 	int levels[POUND_INPUTS_MAX]; /* (n_inputs) */
+	bool unbalanced;              /* almost one: lines are missing or repeated */
 	int *cell;                    /* combination of each row, the last input's level fastest  (n_rows) */
 };
 
@@ -45,7 +46,11 @@ struct pound_given {
 	X(POUND_GIVEN_POOLED,                                                             \
 	  "the spread of the output among samples with the same inputs is its noise, and the indices are those of the mean without noise") \
 	X(POUND_GIVEN_FACTORIAL,                                                          \
-	  "the samples are a complete factorial design: indices are those of its levels, all equally likely")
+	  "the samples are a complete factorial design: indices are those of its levels, all equally likely") \
+	X(POUND_GIVEN_UNBALANCED,                                                         \
+	  "the samples are almost a factorial design, but the combinations of its levels do not all have the same number of lines: they are analyzed as samples drawn at random; add or leave out lines to have the analysis of a factorial design") \
+	X(POUND_GIVEN_ONE_INPUT,                                                          \
+	  "of one input alone with equally frequent values, S1 is 1 by construction: all variance that is not noise is due to it; noise_share has the fraction of the noise")
 
 /* Notes on the indices of an output. */
 #define POUND_GIVEN_NOTES(X)                                                          \

@@ -184,8 +184,16 @@ enum pound_error {
 };
 
 const char *pound_error_name(int row);
-/* The error larger than the sum of all others; unknown errors (NAN) count as 0. */
-enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE]);
+/* The error certainly larger than the sum of all others.  Unknown errors (NAN) count as 0; excitation_low is the least that the
+ * noise of few signals adds to the widest interval. */
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE], double excitation_low);
+/* Whether the widest interval exceeds the other errors, but not known is if by few rows or by few signals. */
+bool pound_accuracy_undecided(const double errors[POUND_ERROR_NONE], double excitation_low);
+
+/* A number known by its bounds; NAN: unknown. */
+struct pound_range {
+	double low, high;
+};
 
 enum { POUND_LEVELS = 4 }; /* n/8, n/4, n/2, n rows */
 
@@ -199,12 +207,15 @@ struct pound_accuracy {
 		double first_change, total_change; /* caused by the differences, upper bound */
 		double first_dropped,
 		    total_dropped; /* by rows left out, if like the row that changes the index most; NAN: unknown */
+		/* by the noise of few signals, as part of the half widths of all rows; NAN: unknown */
+		struct pound_range first_noise, total_noise;
 		double first_half[POUND_LEVELS], total_half[POUND_LEVELS]; /* half widths of intervals; NAN: none */
 	} inputs[POUND_INPUTS_MAX];                                    /* (n_inputs) */
 	int rows[POUND_LEVELS];                                        /* used for the half widths; 0: too few */
-	double slope;                    /* of log half width over log rows; NAN: undefined */
-	double rows_to_halve;            /* to halve the half widths; NAN: undefined, or out of reach */
+	struct pound_estimate slope;     /* of log half width over log rows; NAN: undefined */
+	double rows_to_halve;            /* to halve the half widths, at most; NAN: undefined */
 	double errors[POUND_ERROR_NONE]; /* of the worst index, at most 1; NAN: unknown */
+	double excitation_low; /* at least, in the widest interval, as EXCITATION is at most; NAN: unknown */
 };
 
 /* Index columns, one row each: X(enumerator, name in a result).  The raw columns come from the plain protocol and include

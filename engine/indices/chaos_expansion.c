@@ -297,6 +297,23 @@ static void estimates_fill(const struct fits *f, bool corrected)
 	}
 }
 
+/* What the noise of few signals adds to the half widths of the indices. */
+static void noise_fill(const struct fits *f, enum pound_noise noise, struct pound_closed_results *results)
+{
+	double part[POUND_CLOSED_COLUMNS_MAX];
+	struct pound_noise_part sums = pound_noise_part_init(f->rows, &f->closed, noise, results);
+	for (int fold = 0; fold < FOLDS && sums.known; fold++) {
+		parts_fill(f, fold, part);
+		for (int k = 0; k < rows_in(f, fold) && !pound_stopped(f->rows->stop); k++) {
+			const int row = row_in(f, fold, k);
+			const struct pound_control_variate control = {f->fit + (size_t)row * f->rows->n_samples,
+			                                              f->coefficients[(size_t)fold * f->terms], part};
+			pound_noise_part_add(&sums, row, &control);
+		}
+	}
+	pound_noise_part_ranges(&sums, &results->noise);
+}
+
 enum { GAUSS = 4 }; // points of the Gauss-Legendre rule: exact up to degree 7
 
 static const double gauss_place[GAUSS] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
@@ -399,6 +416,7 @@ void pound_chaos_expansion_indices(const struct pound_rows *rows, const struct p
 	fits_shrink(&fits);
 	estimates_fill(&fits, noise == POUND_NOISE_REMOVED);
 	pound_closed_indices(&fits.closed, fits.estimates, rows, fits.rest, results);
+	noise_fill(&fits, noise, results);
 	if (curves)
 		curves_fill(&fits, curves);
 }

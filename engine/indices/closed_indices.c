@@ -299,9 +299,33 @@ static void ratio_weigh(struct ratio *r, const struct row_terms *mean)
 		r->w = 0.0;
 }
 
-/* What an interval is computed from: effective rows, and the standard error. */
+static void influence_add(struct pound_influence *influence, int column, double weight)
+{
+	if (weight == 0.0)
+		return;
+	assert(influence->n < POUND_INFLUENCE_MAX);
+	influence->column[influence->n] = column;
+	influence->weight[influence->n++] = weight;
+}
+
+/* The influence of a row on a ratio, as weights of the row's estimates. */
+static struct pound_influence influence_of(const struct ratio *r, double ratio, double below)
+{
+	const int n = r->columns->closed->n_columns;
+	struct pound_influence influence = {0};
+	for (int k = 0; k < n; k++)
+		influence_add(&influence, k, r->combination->weight[k] / below);
+	influence_add(&influence, 0, -(r->v - (r->own < 0 ? ratio : 0.0)) / below);
+	influence_add(&influence, n - 1, -ratio * (1.0 - (r->own < 0 ? 0.0 : r->w)) / below);
+	if (r->own >= 0)
+		influence_add(&influence, n + r->own, -ratio * r->w / below);
+	return influence;
+}
+
+/* What an interval is computed from: effective rows, the standard error, and the influence of a row. */
 struct basis {
 	double rows, error;
+	struct pound_influence influence;
 };
 
 /* The ratio of a combination to the whole variance, with the interval of its linearization.
@@ -333,7 +357,8 @@ static struct pound_estimate ratio_interval(const struct combination *c, const s
 	                                           columns->groups, &quantile),
 	             half_width = quantile * error;
 	if (basis)
-		*basis = (struct basis){pound_jackknife_rows(columns->influence, n_rows), error};
+		*basis = (struct basis){pound_jackknife_rows(columns->influence, n_rows), error,
+		                        influence_of(&r, ratio, below)};
 	return (struct pound_estimate){ratio, ratio - half_width, ratio + half_width};
 }
 
@@ -433,7 +458,7 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 	                          .groups = scratch + 2 * closed->n_columns + rows->n_rows};
 	columns.few = pound_rows_behind(rows) < POUND_ROWS_BEHIND;
 	means_fill(&columns);
-	*results = (struct pound_closed_results){0};
+	*results = (struct pound_closed_results){.variance = columns.mean[closed->n_columns - 1]};
 	for (int j = 0; j < closed->n_inputs; j++) {
 		struct combination effect = combination(&columns);
 		effect.known = closed->n_inputs <= POUND_FACTORIAL_INPUTS_MAX;
@@ -445,6 +470,8 @@ void pound_closed_indices(const struct pound_closed *closed, const double *estim
 		results->first_rows[j] = first.rows;
 		results->total_rows[j] = total.rows;
 		results->total_error[j] = total.error;
+		results->first_influence[j] = first.influence;
+		results->total_influence[j] = total.influence;
 		results->shapley[j] = ratio_interval(&effect, &columns, -1, NULL);
 	}
 	results->groups.n = closed->n_groups;

@@ -4,7 +4,8 @@
  * 1. Integration: some runs are repeated on half the sample step, with the same signal.  The difference is treated as an
  *    independent error of every run.
  * 2. Rows: intervals of the first n/8, n/4, n/2 and of all n rows of the design (index_columns.c).
- * 3. The effect of each source on the worst index, and the source whose effect exceeds the sum of the others. */
+ * 3. Signals: part of the intervals, between bounds: noise_part.c from four signals on, else below a bound for pick-freeze.
+ * 4. The effect of each source on the worst index, and the source whose effect exceeds the sum of the others within all bounds. */
 #include "engine/indices/error_budget.h"
 #include "engine/numeric/elementary.h"
 
@@ -189,71 +190,143 @@ static double two_to(double x)
 	return high;
 }
 
-/* Decrease of the half widths with the rows: slope of the log-log regression line, and the rows that halve them.
+/* Standard error of the slope of a line through n points.
  *
- *   rows_to_halve = n 2^(-1/slope)
+ * Given    residual   -       sum of squared residuals;  n > 2
+ *          xx         -       sum of squares of the abscissas about their mean
  *
- * Test     unit_error_budget: half_widths_fall_with_the_root_of_the_rows
+ *   Student's quantile times (residual / (n - 2) / xx)^1/2; widths from M groups have a standard error of 1 / (2 (M - 1))^1/2 of
+ *   their own, which residuals of so few points may not show
  */
-static void slope(struct pound_accuracy *accuracy, int n_inputs, bool totals)
+static double slope_half(double residual, double xx, int n, int groups)
 {
-	// a flatter line is taken as scatter: halving would take more than 32 times the rows
-	const double flattest = -0.2;
-	double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+	const double by_points = pound_jackknife_student(n - 2) * sqrt(fmax(0, residual) / (n - 2) / xx);
+	const double by_groups = groups > 1 ? POUND_NORMAL_95 / sqrt(2 * (groups - 1) * xx) : 0;
+	return fmax(by_points, by_groups);
+}
+
+/* Decrease of the half widths with the rows: slope of the log-log regression line with its 95 % interval, and the rows that surely
+ * halve them.
+ *
+ *   rows_to_halve = n 2^(-1/a),  a the upper end of the slope's interval for Sobol' points if it is below -1/2, else -1/2
+ *
+ * Widths of random rows and Latin hypercubes fall with the root of the rows, whatever the slope of a few widths is; widths of
+ * Sobol' points as fast or faster.
+ *
+ * Test     unit_error_budget: half_widths_fall_with_the_root_of_the_rows, sobol_points_need_fewer_rows_if_it_shows
+ */
+static void slope(struct pound_indices *indices, const struct pound_sample_values *values, bool quasi_random,
+                  bool totals)
+{
+	struct pound_accuracy *accuracy = &indices->accuracy;
+	const double root = -0.5, steepest = -2; // scrambled points of smooth outputs: -3/2
+	double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
 	for (int k = 0; k < POUND_LEVELS; k++) {
-		double half = typical(accuracy, n_inputs, k, totals);
+		double half = typical(accuracy, values->n_inputs, k, totals);
 		if (!(half > 0 && isfinite(half)))
 			continue;
 		double p = pound_elementary_log(accuracy->rows[k]), q = pound_elementary_log(half);
-		n++, x += p, y += q, xx += p * p, xy += p * q;
+		n++, x += p, y += q, xx += p * p, xy += p * q, yy += q * q;
 	}
-	accuracy->slope = n > 1 ? (n * xy - x * y) / (n * xx - x * x) : NAN;
-	bool falls = accuracy->slope < flattest;
-	accuracy->rows_to_halve = falls ? accuracy->rows[POUND_LEVELS - 1] * two_to(-1 / accuracy->slope) : NAN;
+	xx -= x * x / n, xy -= x * y / n, yy -= y * y / n;
+	const double value = n > 1 ? xy / xx : NAN;
+	const double error = n > 2 ? slope_half(yy - xy * xy / xx, xx, (int)n, values->grouping.n) : NAN;
+	accuracy->slope = (struct pound_estimate){value, value - error, value + error};
+	const double sure = quasi_random && value + error < root ? fmax(steepest, value + error) : root;
+	// with fewer rows other estimators are used; where few rows hold the variance, widths do not yet follow a law
+	const bool known = values->n_rows >= POUND_ROWS_MIN && isnan(indices->rows_needed);
+	const bool any = known && typical(accuracy, values->n_inputs, POUND_LEVELS - 1, totals) > 0;
+	accuracy->rows_to_halve = any ? accuracy->rows[POUND_LEVELS - 1] * two_to(-1 / sure) : NAN;
 }
 
 /* ---- all together ---- */
 
-/* The error that is larger than the sum of all others.  Intervals include the noise of few signals: if this noise may be the
- * whole of the widest interval, the sampling error does not count.
+/* The errors of the widest interval by its two sources, which add up as squares. */
+struct split {
+	double others;                /* integration and failed rows */
+	double noise_low, noise_high; /* by few signals */
+	double rows_low, rows_high;   /* by few rows */
+};
+
+static double known(double error)
+{
+	return isnan(error) ? 0 : error;
+}
+
+static struct split split_of(const double errors[POUND_ERROR_NONE], double excitation_low)
+{
+	const double half = known(errors[POUND_ERROR_SAMPLING]);
+	const double high = fmin(known(errors[POUND_ERROR_EXCITATION]), half),
+	             low = fmin(known(excitation_low), high);
+	return (struct split){.others =
+	                          known(errors[POUND_ERROR_INTEGRATION]) + known(errors[POUND_ERROR_FAILED_ROWS]),
+	                      .noise_low = low,
+	                      .noise_high = high,
+	                      .rows_low = sqrt((half - high) * (half + high)),
+	                      .rows_high = sqrt((half - low) * (half + low))};
+}
+
+/* The error that is larger than the sum of all others wherever the two sources of the widest interval are within their bounds.
  *
  * Test     unit_error_budget: the_dominant_error_is_larger_than_the_others_together
  */
-enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE])
+enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE], double excitation_low)
 {
-	const bool all_noise = errors[POUND_ERROR_EXCITATION] >= errors[POUND_ERROR_SAMPLING];
-	double sum = 0;
-	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		sum += isnan(errors[k]) || (k == POUND_ERROR_SAMPLING && all_noise) ? 0 : errors[k];
-	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		if (errors[k] > 0.5 * sum && !(k == POUND_ERROR_SAMPLING && all_noise))
+	const struct split s = split_of(errors, excitation_low);
+	const double half = known(errors[POUND_ERROR_SAMPLING]);
+	if (s.rows_low > s.noise_high + s.others)
+		return POUND_ERROR_SAMPLING;
+	if (s.noise_low > s.rows_high + s.others)
+		return POUND_ERROR_EXCITATION;
+	for (int k = POUND_ERROR_INTEGRATION; k <= POUND_ERROR_FAILED_ROWS; k++)
+		if (known(errors[k]) > half + s.others - known(errors[k]))
 			return (enum pound_error)k;
 	return POUND_ERROR_NONE;
 }
 
-/* Contribution of the noise of few signals to an interval: an upper estimate, limited to the interval, which includes it.
+bool pound_accuracy_undecided(const double errors[POUND_ERROR_NONE], double excitation_low)
+{
+	return pound_accuracy_dominant(errors, excitation_low) == POUND_ERROR_NONE &&
+	       known(errors[POUND_ERROR_SAMPLING]) > split_of(errors, excitation_low).others;
+}
+
+/* Largest contribution of the noise of few signals to an interval, which includes it: the smaller of an upper estimate for
+ * pick-freeze indices and of the upper bound from the signals themselves, if it is known.
  *
  * Test     unit_error_budget: noise_adds_no_more_to_an_interval_than_there_is
  */
-static double noise_part(double spread, double half)
+static double noise_most(double spread, struct pound_range noise, double half)
 {
-	return fmin(1, fmin(spread, half));
+	return fmin(1, fmin(fmin(spread, noise.high), half));
 }
 
-/* Largest contribution of the noise of few signals to the intervals; the values are corrected for the noise.
- * An upper estimate if samples share their signals.  NAN: the noise is not known. */
-static double excitation(const struct pound_indices *indices, int n_rows, int n_inputs)
+/* Contribution of the noise of few signals to the intervals: the largest of all, and the least of the widest interval; the values
+ * are corrected for the noise.  NAN: not known. */
+static void excitation(const struct pound_indices *indices, int n_rows, int n_inputs,
+                       struct pound_accuracy *accuracy)
 {
 	const double w = indices->noise_share, q = w < 1 ? w / (1 - w) : INFINITY;
-	double worst = indices->notes >> POUND_NOTE_NOT_RANDOM & 1 ? 0 : NAN;
+	double worst = indices->notes >> POUND_NOTE_NOT_RANDOM & 1 ? 0 : NAN, widest = -1;
+	accuracy->excitation_low = worst;
 	for (int j = 0; j < n_inputs && isfinite(w); j++) {
 		const struct pound_estimate first = indices->index[POUND_S1][j], total = indices->index[POUND_ST][j];
+		const struct pound_range of_first = accuracy->inputs[j].first_noise,
+		                         of_total = accuracy->inputs[j].total_noise;
 		const double high = total_high(indices, j);
-		worst = fmax(worst, noise_part(first_spread(q, n_rows, first.value, high), half(first)));
-		if (!noise_shared(indices))
-			worst = fmax(worst, noise_part(total_spread(q, n_rows, n_inputs, high), half(total)));
+		worst = fmax(worst, noise_most(first_spread(q, n_rows, first.value, high), of_first, half(first)));
+		if (half(first) > widest) {
+			widest = half(first);
+			accuracy->excitation_low = isnan(of_first.low) ? NAN : fmin(of_first.low, widest);
+		}
+		if (noise_shared(indices))
+			continue;
+		worst = fmax(worst, noise_most(total_spread(q, n_rows, n_inputs, high), of_total, half(total)));
+		if (half(total) > widest) {
+			widest = half(total);
+			accuracy->excitation_low = isnan(of_total.low) ? NAN : fmin(of_total.low, widest);
+		}
 	}
-	return worst;
+	accuracy->errors[POUND_ERROR_EXCITATION] = worst;
 }
 
 /* Effect of each error on the worst index; NAN if unknown for all indices. */
@@ -271,7 +344,6 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
 		dropped = fmax(dropped, fmax(accuracy->inputs[j].first_dropped, accuracy->inputs[j].total_dropped));
 	}
 	errors[POUND_ERROR_SAMPLING] = sampling;
-	errors[POUND_ERROR_EXCITATION] = excitation(indices, values->n_rows, values->n_inputs);
 	errors[POUND_ERROR_INTEGRATION] = integration;
 	errors[POUND_ERROR_FAILED_ROWS] = dropped;
 }
@@ -280,6 +352,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
  *
  * Given    values        the output's runs
  *          checks        the repeated runs
+ *          quasi_random  the design is of Sobol' points
  *          indices       of values, by pound_index_columns_indices
  * Returns  indices       accuracy
  * Memory   scratch       (checks.n)
@@ -290,7 +363,7 @@ static void errors_fill(const struct pound_indices *indices, const struct pound_
  * Test     unit_error_budget
  */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             double *scratch, struct pound_indices *indices)
+                             bool quasi_random, double *scratch, struct pound_indices *indices)
 {
 	struct pound_accuracy *accuracy = &indices->accuracy;
 	double variance = differences(values, checks, scratch, accuracy);
@@ -298,6 +371,7 @@ void pound_accuracy_estimate(const struct pound_sample_values *values, struct po
 	accuracy->variance_share = indices->variance > 0 ? variance / indices->variance : NAN;
 	changes(indices, values);
 	half_widths(indices, values->n_rows, values->n_inputs, accuracy);
-	slope(accuracy, values->n_inputs, !noise_shared(indices));
+	slope(indices, values, quasi_random, !noise_shared(indices));
 	errors_fill(indices, values, accuracy->errors);
+	excitation(indices, values->n_rows, values->n_inputs, accuracy);
 }

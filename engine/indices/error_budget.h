@@ -17,6 +17,6 @@ struct pound_checks {
 
 /* Fills indices->accuracy, after pound_index_columns_indices has filled the other members.  scratch: (checks.n) */
 void pound_accuracy_estimate(const struct pound_sample_values *values, struct pound_checks checks,
-                             double *scratch, struct pound_indices *indices);
+                             bool quasi_random, double *scratch, struct pound_indices *indices);
 
 #endif

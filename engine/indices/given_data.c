@@ -287,6 +287,8 @@ void pound_given_check(const struct pound_given *given, double *scratch, struct 
 	    [POUND_GIVEN_REPLICATES] = given->joined,
 	    [POUND_GIVEN_POOLED] = given->pooled,
 	    [POUND_GIVEN_FACTORIAL] = given->replicates > 0,
+	    [POUND_GIVEN_UNBALANCED] = given->unbalanced,
+	    [POUND_GIVEN_ONE_INPUT] = given->replicates > 0 && d == 1,
 	};
 	for (int k = 0; k < POUND_GIVEN_N_SAMPLES_NOTES; k++)
 		checks->notes |= (unsigned)said[k] << k;

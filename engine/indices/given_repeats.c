@@ -1,4 +1,5 @@
 /* given_repeats.c - repeated inputs of given data: replicates of a random model, levels, factorial designs. */
+#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sort_double.h>
 #include <string.h>
 
@@ -102,23 +103,30 @@ static int discrete_row(void)
 	return row;
 }
 
-/* Whether every combination of the levels has the same number of rows. */
-static bool balanced(const struct pound_given *given, int cells, size_t *count)
+/* How evenly the rows are spread over the combinations of the levels: chi square of equal numbers; 0: exactly. */
+static double unevenness(const struct pound_given *given, int cells, size_t *count)
 {
+	const double each = (double)given->n_rows / cells;
+	double sum = 0.0;
 	memset(count, 0, sizeof *count * (size_t)cells);
 	for (int i = 0; i < given->n_rows; i++)
 		count[given->cell[i]]++;
 	for (int c = 0; c < cells; c++)
-		if (count[c] != (size_t)(given->n_rows / cells))
-			return false;
-	return true;
+		sum += (count[c] - each) * (count[c] - each) / each;
+	return sum;
+}
+
+/* Whether the numbers of rows are more equal than random levels have them in one of a hundred cases. */
+static bool almost_equal(double uneven, int cells)
+{
+	return uneven > 0.0 && gsl_cdf_chisq_P(uneven, cells - 1.0) < 0.01;
 }
 
 /* Empirical distributions: each value with its frequency; and whether the rows are a complete factorial design.
  *
  * Given    given      n_rows, n_inputs, x, inputs with names
  * Returns  inputs     distributions, which point into values
- *          given      replicates, levels, cell
+ *          given      replicates, unbalanced, levels, cell
  * Memory   values     (2 x n_inputs x n_rows)
  *          cell       (n_rows)  held by given
  *          order      (n_rows)
@@ -153,8 +161,11 @@ void pound_given_inputs(struct pound_given *given, double *values, int *cell, si
 		    .type = discrete_row(), .n_values = distinct, .values = value, .weights = weight};
 	}
 	// one input with another value in every row has no levels
-	const bool factorial = cells > 0 && (d > 1 || cells < n) && balanced(given, cells, order);
+	const bool levels = cells > 0 && (d > 1 || cells < n);
+	const double uneven = levels ? unevenness(given, cells, order) : 0.0;
+	const bool factorial = levels && uneven == 0.0;
 	given->replicates = factorial ? n / cells : 0;
+	given->unbalanced = d > 1 && levels && almost_equal(uneven, cells);
 	for (int j = 0; j < d && !factorial; j++) {
 		struct pound_distribution *distribution = &given->inputs[j].distribution;
 		double *value = values + (size_t)j * 2 * n, *weight = value + n;

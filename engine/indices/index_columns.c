@@ -271,6 +271,9 @@ static void first_sharpest(const struct sources *s, struct pound_estimate *into)
 		            neighbours && !same(into[j], s->closed.first[j]) ? behind[j] : s->closed.first_rows[j]);
 	}
 	first_bound(s, heavy, into, replaced);
+	for (int j = 0; j < d; j++)
+		if (!replaced[j] && same(into[j], s->closed.first[j]))
+			s->accuracy->inputs[j].first_noise = s->closed.noise.first[j];
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
 		double other[POUND_INPUTS_MAX];
@@ -304,6 +307,12 @@ static struct pound_estimate nearer_a_share(struct pound_estimate p, struct poun
 	return (struct pound_estimate){q.value, fmin(p.low, q.low), fmax(p.high, q.high)};
 }
 
+/* A part of a half width that is widened as a whole. */
+static struct pound_range widened(struct pound_range part, double widening)
+{
+	return (struct pound_range){part.low * widening, part.high * widening};
+}
+
 /* Totals by the polynomial or by pick-freeze.  If few rows decide, pick-freeze intervals may be too narrow by chance: then by
  * the polynomial, if its value is near [0, 1]. */
 static void total_sharpest(const struct sources *s, struct pound_estimate *into)
@@ -319,6 +328,10 @@ static void total_sharpest(const struct sources *s, struct pound_estimate *into)
 			into[j] = nearer_a_share(closed[j], plain[j]);
 		if (plain[j].high > plain[j].low)
 			behind_take(s, into[j], s->closed.total_rows[j]);
+		if (same(into[j], closed[j]))
+			s->accuracy->inputs[j].total_noise = widened(s->closed.noise.total[j], totals.closed_widening[j]);
+		else if (same(into[j], plain[j]))
+			s->accuracy->inputs[j].total_noise = widened(s->closed.noise.plain[j], totals.plain_widening[j]);
 	}
 	for (int k = 0; k < POUND_LEVELS - 1; k++) {
 		const struct level *level = &s->level[k];
@@ -432,6 +445,9 @@ static void levels_init(struct sources *s, int n_rows)
 		for (int j = 0; j < s->rows->n_inputs; j++)
 			s->accuracy->inputs[j].first_half[k] = s->accuracy->inputs[j].total_half[k] = NAN;
 	}
+	for (int j = 0; j < s->rows->n_inputs; j++)
+		s->accuracy->inputs[j].first_noise = s->accuracy->inputs[j].total_noise =
+		    (struct pound_range){NAN, NAN};
 }
 
 /* The indices of ratios.  If the noise of few signals is known, `explained` is a fraction of the variance without it: the noise

@@ -217,11 +217,26 @@ struct pound_closed {
 	struct pound_closed_pair pair[POUND_CLOSED_PAIRS_MAX];
 };
 
+/* What the noise of few signals adds to the half widths of the indices; NAN: not known.  `plain`: of totals without a polynomial. */
+struct pound_noise_ranges {
+	struct pound_range first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], plain[POUND_INPUTS_MAX];
+};
+
+/* Influence of a row on an index: a linear combination of its estimates (pound_closed_row), plus a constant. */
+enum { POUND_INFLUENCE_MAX = 5 };
+struct pound_influence {
+	int n, column[POUND_INFLUENCE_MAX];
+	double weight[POUND_INFLUENCE_MAX]; /* (n) */
+};
+
 struct pound_closed_results {
 	struct pound_estimate first[POUND_INPUTS_MAX], total[POUND_INPUTS_MAX], shapley[POUND_INPUTS_MAX];
 	double first_rows[POUND_INPUTS_MAX],
 	    total_rows[POUND_INPUTS_MAX];     /* effective, of the intervals: pound_jackknife_rows */
 	double total_error[POUND_INPUTS_MAX]; /* standard error */
+	struct pound_influence first_influence[POUND_INPUTS_MAX], total_influence[POUND_INPUTS_MAX];
+	double variance;                 /* the denominator of closed indices, before its control variates */
+	struct pound_noise_ranges noise; /* of chaos_expansion.c */
 	struct pound_set_indices sets;
 	struct pound_group_indices groups;
 };
@@ -240,6 +255,23 @@ size_t pound_closed_scratch(const struct pound_closed *closed, int n_rows); /* d
 void pound_closed_indices(const struct pound_closed *closed, const double *estimates,
                           const struct pound_rows *rows, double *scratch,
                           struct pound_closed_results *results);
+
+/* Sums over rows for the noise ranges of `results`. */
+enum { POUND_NOISE_INDICES = 3 * POUND_INPUTS_MAX };
+struct pound_noise_part {
+	const struct pound_rows *rows;
+	const struct pound_closed *closed;
+	const struct pound_closed_results *results;
+	bool known; /* the noise is removed from the indices, and there are enough signals */
+	double sum[POUND_NOISE_INDICES], squares[POUND_NOISE_INDICES];
+};
+
+struct pound_noise_part pound_noise_part_init(const struct pound_rows *rows,
+                                              const struct pound_closed *closed, enum pound_noise noise,
+                                              const struct pound_closed_results *results);
+void pound_noise_part_add(struct pound_noise_part *part, int row,
+                          const struct pound_control_variate *control);
+void pound_noise_part_ranges(const struct pound_noise_part *part, struct pound_noise_ranges *ranges);
 
 int pound_chaos_expansion_degree(int n_rows, int n_inputs, int n_samples);
 size_t pound_chaos_expansion_scratch(const struct pound_sample_values *shape);   /* doubles */

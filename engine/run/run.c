@@ -574,7 +574,7 @@ static void indices_reduce(struct pound_run *run, int cell, int output, double *
 	// the note on common signals does not apply to replicates of a user's model
 	if (c->study->elsewhere)
 		into->indices[output].notes &= ~(1u << POUND_NOTE_FRESH_SIGNALS);
-	pound_accuracy_estimate(&values, checks, rest, &into->indices[output]);
+	pound_accuracy_estimate(&values, checks, sampling.quasi_random, rest, &into->indices[output]);
 	into->indices[output].impulse_correlation = pound_ordinate_correlation(run, cell, output, rest);
 	if (output == 0) {
 		into->runs_failed = failed;

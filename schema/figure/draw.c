@@ -178,9 +178,6 @@ double draw_width(const char *text, double size)
 	return width;
 }
 
-/* Width of bold text over width of regular text, in the widest common font (DejaVu Sans). */
-static const double BOLD = 1.12;
-
 /* Number of leading bytes of a text that fit in a width together with an ellipsis; all bytes if the text fits. */
 static size_t fitting(const char *text, double size, double fit)
 {
@@ -209,16 +206,22 @@ static size_t fitting_last(const char *text, double size, double fit)
 	return whole - from;
 }
 
-/* Writes a text.  Of a long text the middle is left out, as names often differ at their ends; its title is the whole text. */
+/* Writes a text.  Of a long text the middle is left out, as names often differ at their ends; its title is the whole text.
+ *
+ * Test     unit_figure: a_long_name_keeps_its_beginning_and_its_end */
 void draw_text(struct drawing *drawing, const struct label *label, const char *text)
 {
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
 	enum ink ink = label->ink ? label->ink : INK_TEXT;
-	const double wide = label->bold ? BOLD * size : size;
+	const double wide = label->bold ? DRAW_BOLD * size : size;
 	size_t whole = strlen(text), n = fitting(text, wide, label->fit), last = 0;
 	if (n < whole) {
-		n = fitting(text, wide, 0.6 * (label->fit - size) + size);
-		last = fitting_last(text + n, wide, 0.4 * (label->fit - size));
+		// a place at the end is left whole if there is room: ", building 1, story 2"
+		const char *place = strstr(text, ", ");
+		const double room = label->fit - size, tail = place ? draw_width(place, wide) : room;
+		const bool keep = tail < 0.8 * room;
+		n = fitting(text, wide, keep ? label->fit - tail : 0.6 * room + size);
+		last = keep ? strlen(place) : fitting_last(text + n, wide, 0.4 * room);
 	}
 	put(drawing, "<text class=\"f%d\" fill=\"%s\"", ink, INKS[ink].light);
 	put_attribute(drawing, "x", label->x);
@@ -271,7 +274,7 @@ double draw_prose(struct drawing *drawing, const struct label *label, const char
 {
 	struct label here = *label;
 	double size = label->size > 0 ? label->size : DRAW_TEXT_SIZE;
-	const double wide = label->bold ? BOLD * size : size;
+	const double wide = label->bold ? DRAW_BOLD * size : size;
 	for (int line = 1; *text; line++, here.y += 1.35 * size) {
 		size_t n = fitting(text, wide, label->fit), whole = strlen(text);
 		if (line == lines || n == whole) {

@@ -23,6 +23,9 @@ enum {
 	DRAW_SERIES = 6, /* number of series colors; marks and dashes repeat with other periods */
 };
 
+/* Width of bold text over width of regular text, in the widest common font (DejaVu Sans). */
+#define DRAW_BOLD 1.12
+
 /* Colors: series 0 to DRAW_SERIES - 1, then these. */
 enum ink { INK_SERIES, INK_TEXT = DRAW_SERIES, INK_MUTED, INK_GRID, INK_PAPER, N_INKS };
 

@@ -121,13 +121,15 @@ static void draw_output(struct plot *plot, const cJSON *output, struct panel *pa
 	axis.end = panel->x + panel->width - 12;
 	double top = panel->y + 22, bottom = top + (n + noise) * ROW + 4;
 	axis_ticks_across(&axis, &ticks);
-	draw_text(&plot->d,
-	          &(struct label){.x = axis.start,
-	                          .y = panel->y + 13,
-	                          .size = DRAW_TITLE_SIZE,
-	                          .bold = true,
-	                          .fit = axis.end - axis.start},
-	          plot_output_name(output, title));
+	plot_output_name(output, title);
+	// aligned with the frame, unless it needs the room above the names
+	const double wide = draw_width(title, DRAW_BOLD * DRAW_TITLE_SIZE);
+	const double left = fmin(axis.start, fmax(panel->x, axis.end - wide - 1));
+	draw_text(
+	    &plot->d,
+	    &(struct label){
+	        .x = left, .y = panel->y + 13, .size = DRAW_TITLE_SIZE, .bold = true, .fit = axis.end - left},
+	    title);
 	for (int k = 0; k < ticks.n; k++) {
 		double x = axis_at(&axis, ticks.tick[k].value);
 		draw_line(&plot->d, ticks.tick[k].value == 0 ? &line : &grid, x, top, x, bottom);

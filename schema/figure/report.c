@@ -407,7 +407,8 @@ static void put_accuracy(struct report *report)
 	cJSON_ArrayForEach(value, errors)
 	{
 		char label[80];
-		snprintf(label, sizeof label, "error from %.60s", value->string);
+		const bool least = strcmp(value->string, "excitation_low") == 0;
+		snprintf(label, sizeof label, "error from %.60s", least ? "excitation, at least" : value->string);
 		put_member(report, errors, value->string, label);
 	}
 	table_end(report);

@@ -3,22 +3,54 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "schema/study/study_json.h"
+
+/* Errors by source, of an output or the worst of all, and the least that signals add to the widest interval. */
+struct errors {
+	double of[POUND_ERROR_NONE], excitation_low;
+};
+
+/* Writes that few rows and few signals cannot be told apart as sources of the widest interval, and how to find out. */
+static void write_undecided(struct writer *w, const struct pound_study *study, const struct errors *errors,
+                            const char *index)
+{
+	const double high = errors->of[POUND_ERROR_EXCITATION];
+	const char *noise = study->elsewhere ? "replicates" : "signals";
+	char least[40] = "0", note[500];
+	if (errors->excitation_low > 0)
+		snprintf(least, sizeof least, "%.2g", errors->excitation_low);
+	snprintf(
+	    note, sizeof note,
+	    "Whether more rows or more %s would narrow the widest interval cannot be told apart with so few %s: "
+	    "their noise makes up between %s and %.2g of its half-width of %.2g%s%s%s.",
+	    noise, noise, least, high, errors->of[POUND_ERROR_SAMPLING], *index ? ", of " : "", index,
+	    study->elsewhere ? "" : "; design.signals = auto finds out");
+	writer_text(w, "note", note);
+}
 
 /* Writes the error estimates, and the dominant one: larger than all others together.
  *
  * Given    index   name of the index with the largest error from sampling or integration
  */
-static void write_errors(struct writer *w, const struct pound_study *study,
-                         const double errors[POUND_ERROR_NONE], const char *index)
+static void write_errors(struct writer *w, const struct pound_study *study, const struct errors *all,
+                         const char *index)
 {
-	enum pound_error dominant = pound_accuracy_dominant(errors);
+	const double *errors = all->of;
+	enum pound_error dominant = pound_accuracy_dominant(errors, all->excitation_low);
 	writer_object(w, "errors", WRITER_LINE);
-	for (int k = 0; k < POUND_ERROR_NONE; k++)
+	for (int k = 0; k < POUND_ERROR_NONE; k++) {
 		writer_number(w, pound_error_name(k), errors[k]);
+		if (k == POUND_ERROR_EXCITATION)
+			writer_number(w, "excitation_low", all->excitation_low);
+	}
 	writer_end(w);
 	writer_text(w, "dominant", pound_error_name(dominant));
+	if (pound_accuracy_undecided(errors, all->excitation_low))
+		write_undecided(w, study, all, index);
+	if (!*index)
+		index = "an index";
 	if (dominant == POUND_ERROR_NONE)
 		return;
 	const struct {
@@ -29,17 +61,19 @@ static void write_errors(struct writer *w, const struct pound_study *study,
 	                              "of an interval is %.2g, of ",
 	                              true},
 	    [POUND_ERROR_EXCITATION] =
-	        {study->elsewhere ? "The number of replicates may be the largest source of error: their "
-	                            "noise adds at most %.2g to the half-width of an interval"
-	                          : "The number of signals may be the largest source of error: their noise "
-	                            "adds at most %.2g to the half-width of an interval",
-	         false},
+	        {study->elsewhere
+	             ? "The number of replicates is the largest source of error: their noise makes up at "
+	               "least %.2g of the largest half-width of an interval, of "
+	             : "The number of signals is the largest source of error: their noise makes up at "
+	               "least %.2g of the largest half-width of an interval, of ",
+	         true},
 	    [POUND_ERROR_INTEGRATION] = {"Integration is the largest source of error: up to %.2g in ", true},
 	    [POUND_ERROR_FAILED_ROWS] = {"Failed rows are the largest source of error: if all were like the most "
 	                                 "extreme valid row, an index would change by up to %.2g",
 	                                 false}};
 	char note[400];
-	int n = snprintf(note, sizeof note, notes[dominant].sentence, errors[dominant]);
+	int n = snprintf(note, sizeof note, notes[dominant].sentence,
+	                 dominant == POUND_ERROR_EXCITATION ? all->excitation_low : errors[dominant]);
 	snprintf(note + n, sizeof note - (size_t)n, "%s.", notes[dominant].of_index ? index : "");
 	writer_text(w, "note", note);
 }
@@ -49,7 +83,8 @@ static void write_errors(struct writer *w, const struct pound_study *study,
 static void least_certain(const struct pound_study *study, const struct pound_accuracy *accuracy, char *text,
                           size_t size)
 {
-	const bool runs = pound_accuracy_dominant(accuracy->errors) == POUND_ERROR_INTEGRATION;
+	const bool runs =
+	    pound_accuracy_dominant(accuracy->errors, accuracy->excitation_low) == POUND_ERROR_INTEGRATION;
 	double worst = -1;
 	for (int j = 0; j < study->n_inputs; j++) {
 		double of[] = {
@@ -87,7 +122,9 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 	writer_number(w, "difference_median", accuracy->difference_median);
 	writer_number(w, "difference_largest", accuracy->difference_largest);
 	writer_number(w, "variance_share", accuracy->variance_share);
-	writer_number(w, "slope", accuracy->slope);
+	writer_number(w, "slope", accuracy->slope.value);
+	writer_number(w, "slope_low", accuracy->slope.low);
+	writer_number(w, "slope_high", accuracy->slope.high);
 	writer_number(w, "rows_to_halve",
 	              isfinite(accuracy->rows_to_halve) ? ceil(accuracy->rows_to_halve) : NAN);
 	writer_array(w, "rows", WRITER_LINE);
@@ -108,9 +145,11 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 		writer_end(w);
 	}
 	writer_end(w);
-	char index[160] = "an index";
+	char index[160] = "";
 	least_certain(study, accuracy, index, sizeof index);
-	write_errors(w, study, accuracy->errors, index);
+	struct errors errors = {.excitation_low = accuracy->excitation_low};
+	memcpy(errors.of, accuracy->errors, sizeof errors.of);
+	write_errors(w, study, &errors, index);
 	writer_end(w);
 }
 
@@ -121,10 +160,11 @@ void result_accuracy_output(struct writer *w, const struct pound_study *study,
 void result_accuracy_study(struct writer *w, const struct pound_study *study,
                            const struct pound_result *result)
 {
-	double median = NAN, largest = NAN, errors[POUND_ERROR_NONE];
+	double median = NAN, largest = NAN;
+	struct errors errors = {.excitation_low = NAN};
 	int64_t checked = 0;
 	for (int k = 0; k < POUND_ERROR_NONE; k++)
-		errors[k] = NAN;
+		errors.of[k] = NAN;
 	for (int c = 0; c < result->n_cells; c++) {
 		struct pound_scene scene;
 		int64_t checked_of_cell = 0;
@@ -137,8 +177,10 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 				checked_of_cell = accuracy->runs_checked;
 			median = fmax(median, accuracy->difference_median);
 			largest = fmax(largest, accuracy->difference_largest);
+			if (!(accuracy->errors[POUND_ERROR_SAMPLING] <= errors.of[POUND_ERROR_SAMPLING]))
+				errors.excitation_low = accuracy->excitation_low;
 			for (int k = 0; k < POUND_ERROR_NONE; k++)
-				errors[k] = fmax(errors[k], accuracy->errors[k]);
+				errors.of[k] = fmax(errors.of[k], accuracy->errors[k]);
 		}
 		checked += checked_of_cell;
 	}
@@ -150,7 +192,7 @@ void result_accuracy_study(struct writer *w, const struct pound_study *study,
 	writer_whole(w, "runs_checked", checked);
 	writer_number(w, "difference_median", median);
 	writer_number(w, "difference_largest", largest);
-	write_errors(w, study, errors, "an index");
+	write_errors(w, study, &errors, "");
 	writer_end(w);
 }
 

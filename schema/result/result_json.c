@@ -133,7 +133,6 @@ static void write_response(struct writer *w, const struct pound_study *study, co
 #define X(name, text) text,
 static const char *const index_names[] = {POUND_INDICES(X)};
 static const char *const share_names[] = {POUND_SHARES(X)};
-static const char *const notes[] = {POUND_NOTES(X)};
 static const char *const named_forms[] = {POUND_NAMED(X)};
 #undef X
 
@@ -145,21 +144,6 @@ void result_estimate(struct writer *w, const char *name, const struct pound_esti
 	writer_number(w, member, estimate->low);
 	snprintf(member, sizeof member, "%s_high", name);
 	writer_number(w, member, estimate->high);
-}
-
-/* All notes about an output's indices, in one string. */
-static void write_notes(struct writer *w, const struct pound_indices *indices)
-{
-	char text[2048];
-	int n = 0;
-	for (int k = 0; k < POUND_N_NOTES; k++)
-		if (indices->notes >> k & 1)
-			n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", n ? "; " : "", notes[k]);
-	if (indices->notes >> POUND_NOTE_FEW_DECIDE & 1)
-		n += snprintf(text + n, sizeof text - (size_t)n, ": %.15g rows or more are needed",
-		              indices->rows_needed);
-	if (n)
-		writer_text(w, "note", text);
 }
 
 /* Whether the noise-corrected variance, the denominator of all indices except the raw ones, may be 0. */
@@ -364,7 +348,7 @@ static void write_indices(struct writer *w, const struct pound_study *study,
 	writer_number(w, "variance", indices->variance);
 	writer_number(w, "noise_share", indices->noise_share);
 	writer_number(w, "ratio_bias", indices->ratio_bias);
-	write_notes(w, indices);
+	result_notes_output(w, indices);
 	write_excitation(w, indices);
 	writer_array(w, "inputs", WRITER_LINES);
 	for (int j = 0; j < study->n_inputs; j++)

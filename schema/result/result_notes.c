@@ -1,4 +1,4 @@
-/* result_notes.c - notes about estimates of indices outside [0, 1] or outside their intervals.
+/* result_notes.c - notes about estimates of indices outside [0, 1] or outside their intervals, and notes of an output.
  *
  * An index lies in [0, 1].  Estimates are not clipped, so the estimate of a small index may be below 0.  An estimate further
  * outside, or outside its own interval, has another cause, which the note names. */
@@ -122,6 +122,55 @@ void result_failures(struct writer *w, const struct pound_work *work)
 		writer_object(w, NULL, WRITER_LINE);
 		writer_text(w, "reason", reasons[k]);
 		writer_whole(w, "runs", work->failed[k]);
+		writer_end(w);
+	}
+	writer_end(w);
+}
+
+/* ---- notes of an output ---- */
+
+#define X(name, text) {#name, text},
+static const struct {
+	const char *name, *text;
+} notes[] = {POUND_NOTES(X)};
+#undef X
+
+/* The name of a note in results: few_rows for POUND_NOTE_FEW_ROWS. */
+static const char *note_name(int note, char name[32])
+{
+	int n = 0;
+	for (const char *c = notes[note].name + strlen("POUND_NOTE_"); *c; c++)
+		name[n++] = *c == '_' ? '_' : (char)(*c + 'a' - 'A');
+	name[n] = '\0';
+	return name;
+}
+
+/* All notes about an output's indices: in one string for readers, and each with its name for programs.
+ *
+ * Test     unit_result_json: all_there_is_to_say_has_room
+ */
+void result_notes_output(struct writer *w, const struct pound_indices *indices)
+{
+	char text[2048], name[32];
+	int n = 0;
+	for (int k = 0; k < POUND_N_NOTES; k++)
+		if (indices->notes >> k & 1)
+			n += snprintf(text + n, sizeof text - (size_t)n, "%s%s", n ? "; " : "", notes[k].text);
+	if (indices->notes >> POUND_NOTE_FEW_DECIDE & 1)
+		n += snprintf(text + n, sizeof text - (size_t)n, ": %.15g rows or more are needed",
+		              indices->rows_needed);
+	if (n == 0)
+		return;
+	writer_text(w, "note", text);
+	writer_array(w, "notes", WRITER_LINES);
+	for (int k = 0; k < POUND_N_NOTES; k++) {
+		if (!(indices->notes >> k & 1))
+			continue;
+		writer_object(w, NULL, WRITER_LINE);
+		writer_text(w, "name", note_name(k, name));
+		writer_text(w, "text", notes[k].text);
+		if (k == POUND_NOTE_FEW_DECIDE)
+			writer_number(w, "rows_needed", indices->rows_needed);
 		writer_end(w);
 	}
 	writer_end(w);

@@ -25,4 +25,7 @@ void result_notes_write(struct writer *w, const struct result_notes *notes);
 
 void result_failures(struct writer *w, const struct pound_work *work); /* reasons of failed runs */
 
+/* Writes the members "note" and "notes" of an output; nothing without a note. */
+void result_notes_output(struct writer *w, const struct pound_indices *indices);
+
 #endif

@@ -75,7 +75,7 @@ void widest_interval_find(const struct reading *result, struct widest_interval *
 	if (!isfinite(widest.last))
 		return;
 	if (isfinite(widest.rows_to_halve))
-		snprintf(more, sizeof more, "; %.0f rows would halve its width", widest.rows_to_halve);
+		snprintf(more, sizeof more, "; about %.0f rows would halve its width", widest.rows_to_halve);
 	snprintf(text->size, WIDEST_TEXT, "The widest 95 %% interval is +-%.2g, of %s of input %s, output %s%s.",
 	         widest.last, widest.index, widest.input ? widest.input : "?", widest.output, more);
 	if (widest.last > 1.1 * widest.least)

@@ -401,6 +401,40 @@ static void every_table_of_a_separation_is_shown_by_its_name(void **state)
 	program_free(&other);
 }
 
+static void a_row_shows_the_demands_of_its_stories_and_each_signal_by_its_places(void **state)
+{
+	(void)state;
+	struct program_outcome document = POUND("example", "row_of_three");
+	static const char law[] = "\"scene\": {\"law\": {\"type\": \"elastoplastic\"},";
+	const char *scene = strstr(document.out, "\"scene\": {");
+	char *nonlinear = NULL;
+	assert_non_null(scene);
+	assert_true(asprintf(&nonlinear, "%.*s%s%s", (int)(scene - document.out), document.out, law,
+	                     scene + strlen("\"scene\": {")) > 0);
+	static const char *const summary[] = {"pound", "run", "--format", "table", "-", NULL};
+	static const char *const signals[] = {"pound",   "run",     "--format", "table",
+	                                      "--table", "signals", "-",        NULL};
+	struct program_outcome elastic = program_run(summary, document.out),
+	                       plastic = program_run(summary, nonlinear);
+	program_expect(&elastic, 0);
+	program_expect(&plastic, 0);
+	assert_non_null(strstr(plastic.out, "drift/h  demand   residual    shear_n\n"));
+	// no column without a value, and so all in one block
+	assert_non_null(strstr(elastic.out, "drift_m    free_m   drift/h    shear_n  a_m_s2  a_free\n"));
+	struct program_outcome places = program_run(signals, nonlinear);
+	program_expect(&places, 0);
+	// every block has the keys of its lines
+	const char *first = strstr(places.out, "signal  building  storey  drift_max_m");
+	assert_non_null(first);
+	assert_non_null(strstr(first + 1, "signal  building  storey  "));
+	assert_non_null(strstr(places.out, "signal  contact  left_level"));
+	assert_null(strstr(places.out, "building_0.storey_1"));
+	for (const char *line = places.out, *end; (end = strchr(line, '\n')); line = end + 1)
+		assert_true(end - line <= 80);
+	program_free(&elastic), program_free(&plastic), program_free(&places), program_free(&document);
+	free(nonlinear);
+}
+
 static void csv_has_as_many_cells_in_every_row(void **state)
 {
 	(void)state;
@@ -426,6 +460,7 @@ static void csv_has_as_many_cells_in_every_row(void **state)
 CHECK_MAIN(cmocka_unit_test(groups_are_in_the_summary_over_cells_and_places),
            cmocka_unit_test(a_misspelt_name_is_answered_with_the_nearest),
            cmocka_unit_test(every_table_fits_a_terminal_of_80_columns),
+           cmocka_unit_test(a_row_shows_the_demands_of_its_stories_and_each_signal_by_its_places),
            cmocka_unit_test(a_table_has_no_column_for_an_index_that_is_null_throughout),
            cmocka_unit_test(a_table_shows_every_estimate_of_a_result_and_its_notes),
            cmocka_unit_test(a_table_without_a_name_is_a_summary_of_one_screen),

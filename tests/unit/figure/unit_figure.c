@@ -294,6 +294,7 @@ static void a_long_name_keeps_its_beginning_and_its_end(void **state)
 	draw_text(&d, &(struct label){.x = 10, .y = 20, .fit = 120},
 	          "the stiffness of the contact of building 11");
 	draw_text(&d, &(struct label){.x = 10, .y = 40, .fit = 60}, "ααααααααααααααααααααααααω");
+	draw_text(&d, &(struct label){.x = 10, .y = 60, .fit = 190}, "drift amplification, building 11, story 4");
 	char *svg = draw_take(&d, "title", "sentence", &n);
 	// its title is the whole name
 	const char *text = strstr(svg, "<title>the stiffness of the contact of building 11</title>the s");
@@ -301,6 +302,8 @@ static void a_long_name_keeps_its_beginning_and_its_end(void **state)
 	assert_non_null(strstr(text, "…"));
 	assert_non_null(strstr(text, "ng 11</text>"));
 	assert_non_null(strstr(text, "αω</text>"));
+	assert_non_null(strstr(text, "</title>drift"));
+	assert_non_null(strstr(text, "…, building 11, story 4</text>"));
 	check_svg("a long name", svg, n);
 	free(svg);
 }

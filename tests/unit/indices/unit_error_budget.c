@@ -29,7 +29,7 @@ static struct estimated *estimated_of(const struct pound_sample_values *values, 
 	for (int k = 0; k < POUND_N_INDICES; k++)
 		e->of.index[k] = e->index[k];
 	pound_index_columns_indices(values, &sampling, seed, scratch, &e->of);
-	pound_accuracy_estimate(values, checks, scratch, &e->of);
+	pound_accuracy_estimate(values, checks, false, scratch, &e->of);
 	free(scratch), free(u);
 	return e;
 }
@@ -150,14 +150,45 @@ static void half_widths_fall_with_the_root_of_the_rows(void **state)
 	assert_int_equal(accuracy->rows[0], 256);
 	assert_int_equal(accuracy->rows[3], 2048);
 	// half widths of 256 rows scatter by 5 % (more if outputs have heavy tails), so the slope scatters by some 0.05
-	check_near(accuracy->slope, -0.5, 0.1);
-	check_near(accuracy->rows_to_halve / 2048, exp2(-1 / accuracy->slope), 1e-12);
+	check_near(accuracy->slope.value, -0.5, 0.1);
+	assert_true(accuracy->slope.low < -0.5 && accuracy->slope.high > -0.5);
+	// by the root of the rows, whatever the slope
+	check_near(accuracy->rows_to_halve / 2048, 4, 1e-12);
 	// no runs were checked, and there is one signal only
 	assert_true(isnan(accuracy->errors[POUND_ERROR_INTEGRATION]));
 	assert_true(isnan(accuracy->errors[POUND_ERROR_EXCITATION]));
-	assert_int_equal(pound_accuracy_dominant(accuracy->errors), POUND_ERROR_SAMPLING);
+	assert_int_equal(pound_accuracy_dominant(accuracy->errors, accuracy->excitation_low),
+	                 POUND_ERROR_SAMPLING);
 	free(e);
 	function_values_free(&values);
+}
+
+/* Sobol' points of a smooth function: the widths fall faster than with the root of the rows, and by so much that it shows. */
+static void sobol_points_need_fewer_rows_if_it_shows(void **state)
+{
+	(void)state;
+	for (int quasi_random = 0; quasi_random < 2; quasi_random++) {
+		const struct pound_design design = {.method = 2, .rows = 16384, .randomisations = 32, .seed = 5};
+		struct pound_sample_values values =
+		    function_values_of(function_named("ishigami"), &design, (struct function_noise){.n_signals = 1});
+		struct estimated *e = calloc(1, sizeof *e);
+		double *u = function_design_of(&design),
+		       *scratch = malloc(sizeof *scratch * pound_index_columns_scratch(&values, 0));
+		const struct pound_sampling sampling = {
+		    .u = u, .random = true, .fresh_signals = true, .quasi_random = true};
+		for (int k = 0; k < POUND_N_INDICES; k++)
+			e->of.index[k] = e->index[k];
+		pound_index_columns_indices(&values, &sampling, 5, scratch, &e->of);
+		pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, quasi_random, scratch, &e->of);
+		const struct pound_accuracy *accuracy = &e->of.accuracy;
+		assert_true(accuracy->slope.high < -0.5);
+		if (quasi_random)
+			check_near(accuracy->rows_to_halve / design.rows, exp2(-1 / accuracy->slope.high), 1e-12);
+		else
+			check_near(accuracy->rows_to_halve / design.rows, 4, 1e-12);
+		free(u), free(scratch), free(e);
+		function_values_free(&values);
+	}
 }
 
 static double half(struct pound_estimate estimate)
@@ -207,13 +238,14 @@ static void half_widths_of_all_rows_are_those_of_the_indices(void **state)
 static void noise_of_few_signals_is_an_error_in_the_intervals(void **state)
 {
 	(void)state;
-	static const double shares[] = {1e-4, 4};
+	static const double shares[] = {1e-4, 20};
 	for (int k = 0; k < 2; k++) {
 		struct pound_sample_values values = function_values(
 		    function_named("ishigami"), 800, 7, (struct function_noise){.n_signals = 4, .share = shares[k]});
 		struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 7);
 		const double *errors = e->of.accuracy.errors;
-		assert_int_equal(pound_accuracy_dominant(errors), k ? POUND_ERROR_EXCITATION : POUND_ERROR_SAMPLING);
+		assert_int_equal(pound_accuracy_dominant(errors, e->of.accuracy.excitation_low),
+		                 k ? POUND_ERROR_EXCITATION : POUND_ERROR_SAMPLING);
 		assert_true(errors[POUND_ERROR_EXCITATION] > 0);
 		free(e);
 		function_values_free(&values);
@@ -245,7 +277,7 @@ static void noise_adds_no_more_to_an_interval_than_there_is(void **state)
 		e->of.index[k] = e->index[k];
 	pound_index_columns_indices(&values, &(struct pound_sampling){.u = u, .random = true}, 1, scratch,
 	                            &e->of);
-	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, scratch, &e->of);
+	pound_accuracy_estimate(&values, (struct pound_checks){0, NULL}, false, scratch, &e->of);
 	const double sampling = e->of.accuracy.errors[POUND_ERROR_SAMPLING];
 	assert_true(e->of.noise_share > 0.2);
 	check_near(e->index[POUND_S1][0].low, 1, 0);
@@ -262,13 +294,13 @@ static void few_rows_and_constant_outputs_have_no_slope(void **state)
 	struct estimated *e = estimated_of(&values, (struct pound_checks){0, NULL}, 5);
 	static const int rows[POUND_LEVELS] = {0, 0, 0, 12};
 	assert_memory_equal(e->of.accuracy.rows, rows, sizeof rows);
-	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.rows_to_halve));
+	assert_true(isnan(e->of.accuracy.slope.value) && isnan(e->of.accuracy.rows_to_halve));
 	free(e);
 	double *constant = calloc(12 * SAMPLES, sizeof *constant);
 	struct pound_sample_values flat = values;
 	flat.numerator = constant;
 	e = estimated_of(&flat, (struct pound_checks){0, NULL}, 5);
-	assert_true(isnan(e->of.accuracy.slope) && isnan(e->of.accuracy.variance_share));
+	assert_true(isnan(e->of.accuracy.slope.value) && isnan(e->of.accuracy.variance_share));
 	assert_true(isnan(e->of.accuracy.errors[POUND_ERROR_SAMPLING]));
 	free(e), free(constant);
 	function_values_free(&values);
@@ -277,17 +309,31 @@ static void few_rows_and_constant_outputs_have_no_slope(void **state)
 static void the_dominant_error_is_larger_than_the_others_together(void **state)
 {
 	(void)state;
+	// the widest interval has the squares of both of its sources: with 0.05 by signals sqrt(0.1^2 - 0.05^2) = 0.087 by rows
 	static const struct {
-		double errors[POUND_ERROR_NONE];
+		double errors[POUND_ERROR_NONE], low;
 		enum pound_error wanted;
+		bool undecided;
 	} cases[] = {
-	    {{0.1, 0.02, 1e-9, 0}, POUND_ERROR_SAMPLING},     {{0.01, 0.02, NAN, 0}, POUND_ERROR_EXCITATION},
-	    {{0.01, NAN, 0.2, 0.1}, POUND_ERROR_INTEGRATION}, {{0.01, 0.01, 0.01, 0.04}, POUND_ERROR_FAILED_ROWS},
-	    {{0.05, 0.05, 0, 0}, POUND_ERROR_EXCITATION},     {{0.05, 0.03, 0.02, 0}, POUND_ERROR_NONE},
-	    {{NAN, NAN, NAN, 0}, POUND_ERROR_NONE},
+	    {{0.1, 0.02, 1e-9, 0}, NAN, POUND_ERROR_SAMPLING, false},
+	    {{0.1, NAN, 1e-9, 0}, NAN, POUND_ERROR_SAMPLING, false},
+	    {{0.1, 0.05, 0.03, 0}, 0.05, POUND_ERROR_SAMPLING, false},
+	    {{0.1, 0.05, 0.04, 0}, 0.05, POUND_ERROR_NONE, true},
+	    // an upper bound that is the whole interval shows nothing
+	    {{0.05, 0.05, 0, 0}, NAN, POUND_ERROR_NONE, true},
+	    {{0.05, 0.05, 0, 0}, 0.02, POUND_ERROR_NONE, true},
+	    // 0.04 leaves at most 0.03 to the rows
+	    {{0.05, 0.05, 0, 0}, 0.04, POUND_ERROR_EXCITATION, false},
+	    {{0.05, 0.05, 0.02, 0}, 0.04, POUND_ERROR_NONE, true},
+	    {{0.01, NAN, 0.2, 0.1}, NAN, POUND_ERROR_INTEGRATION, false},
+	    {{0.01, 0.01, 0.01, 0.04}, 0.01, POUND_ERROR_FAILED_ROWS, false},
+	    {{0.05, 0.05, 0.04, 0.04}, 0.05, POUND_ERROR_NONE, false},
+	    {{NAN, NAN, NAN, 0}, NAN, POUND_ERROR_NONE, false},
 	};
-	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++)
-		assert_int_equal(pound_accuracy_dominant(cases[k].errors), cases[k].wanted);
+	for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+		assert_int_equal(pound_accuracy_dominant(cases[k].errors, cases[k].low), cases[k].wanted);
+		assert_int_equal(pound_accuracy_undecided(cases[k].errors, cases[k].low), cases[k].undecided);
+	}
 	assert_string_equal(pound_error_name(POUND_ERROR_FAILED_ROWS), "failed_rows");
 	assert_null(pound_error_name(POUND_ERROR_NONE));
 }
@@ -373,6 +419,7 @@ CHECK_MAIN(cmocka_unit_test(differences_of_runs_come_out_relative_and_as_a_varia
            cmocka_unit_test(runs_that_agree_move_no_index),
            cmocka_unit_test(indices_move_no_more_than_stated_when_noise_is_added),
            cmocka_unit_test(half_widths_fall_with_the_root_of_the_rows),
+           cmocka_unit_test(sobol_points_need_fewer_rows_if_it_shows),
            cmocka_unit_test(half_widths_of_all_rows_are_those_of_the_indices),
            cmocka_unit_test(noise_of_few_signals_is_an_error_in_the_intervals),
            cmocka_unit_test(few_rows_and_constant_outputs_have_no_slope),

@@ -210,6 +210,57 @@ static void a_factorial_design_has_the_indices_of_its_levels(void **state)
 	given_free(&s);
 }
 
+/* One lost line is reported; levels drawn at random, as unequally often as chance has them, are not. */
+static void a_factorial_design_with_a_lost_line_is_reported(void **state)
+{
+	(void)state;
+	enum { R = 10, SEEDS = 200 };
+	const unsigned note = 1u << POUND_GIVEN_UNBALANCED;
+	struct given_samples s;
+	int reported = 0;
+	for (int lost = 0; lost < 2; lost++) {
+		given_draw(&s, CELLS * R, 3, 50);
+		factorial_fill(&s, R, 1.0);
+		s.given.n_rows -= lost;
+		given_check(&s);
+		assert_int_equal(s.checks.notes & note, lost ? note : 0);
+		assert_int_equal(s.given.replicates, lost ? 0 : R);
+		given_free(&s);
+	}
+	for (int seed = 0; seed < SEEDS; seed++) {
+		given_draw(&s, 600, 3, 900 + (uint64_t)seed);
+		for (int k = 0; k < 3 * 600; k++)
+			s.x[k] = s.x[k] < 0.5;
+		given_check(&s);
+		reported += (s.checks.notes & note) != 0;
+		given_free(&s);
+	}
+	// one of a hundred: a binomial number of mean 2, above 7 with probability 0.001
+	assert_in_range(reported, 0, 7);
+}
+
+static void one_balanced_input_alone_explains_everything_by_construction(void **state)
+{
+	(void)state;
+	struct given_samples s;
+	static struct pound_given_indices indices;
+	for (int balanced = 0; balanced < 2; balanced++) {
+		given_draw(&s, 100, 1, 7);
+		for (int i = 0; i < 100; i++) {
+			s.x[i] = i % (balanced ? 4 : 3);
+			s.y[i] = s.x[i] + 3 * given_normal();
+		}
+		given_check(&s);
+		assert_int_equal(s.checks.notes >> POUND_GIVEN_ONE_INPUT & 1, balanced);
+		if (balanced) {
+			given_estimate(&s, &indices);
+			check_near(indices.first[0].value, 1, 1e-12);
+			assert_true(indices.noise_share > 0);
+		}
+		given_free(&s);
+	}
+}
+
 /* Replicates in a factorial design: S1, ST and S2 without the noise, which is a third of the variance of a run. */
 static void noise_of_a_factorial_design_is_removed(void **state)
 {
@@ -492,6 +543,8 @@ CHECK_MAIN(cmocka_unit_test(rows_with_the_same_inputs_are_replicates_unless_all_
            cmocka_unit_test(noise_of_known_variance_is_removed),
            cmocka_unit_test(an_output_that_is_noise_has_no_indices),
            cmocka_unit_test(a_factorial_design_has_the_indices_of_its_levels),
+           cmocka_unit_test(a_factorial_design_with_a_lost_line_is_reported),
+           cmocka_unit_test(one_balanced_input_alone_explains_everything_by_construction),
            cmocka_unit_test(noise_of_a_factorial_design_is_removed),
            cmocka_unit_test(one_row_for_each_combination_has_first_order_indices),
            cmocka_unit_test(replicates_of_few_points_have_indices),

@@ -210,9 +210,10 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 		                                              .difference_median = 1e-12 * (o + 1),
 		                                              .difference_largest = 1e-9 * (o + 1),
 		                                              .rows = {0, 0, 50, 100},
-		                                              .slope = -0.5,
+		                                              .slope = {-0.5, -0.75, -0.25},
 		                                              .rows_to_halve = 399.5,
-		                                              .errors = {0.125 * (o + 1), NAN, 1e-6, 0}};
+		                                              .errors = {0.125 * (o + 1), NAN, 1e-6, 0},
+		                                              .excitation_low = NAN};
 		indices[o].accuracy.inputs[1].total_change = 0.375;
 		indices[o].accuracy.inputs[1].first_half[2] = 0.75;
 		indices[o].accuracy.inputs[1].first_half[3] = 0.5;
@@ -223,6 +224,8 @@ static void every_output_says_how_far_it_may_be_off(void **state)
 	static const char accuracy[] = "/cells/1/outputs/0/accuracy";
 	check_near(reading_number(r, "%s/runs_checked", accuracy), 32, 0);
 	check_near(reading_number(r, "%s/rows_to_halve", accuracy), 400, 0);
+	check_near(reading_number(r, "%s/slope_low", accuracy), -0.75, 0);
+	check_near(reading_number(r, "%s/slope_high", accuracy), -0.25, 0);
 	check_near(reading_number(r, "%s/inputs/1/ST_integration", accuracy), 0.375, 0);
 	assert_int_equal(reading_count(r, "%s/rows", accuracy), 2);
 	assert_int_equal(reading_count(r, "%s/inputs/1/S1_half_widths", accuracy), 2);
@@ -265,6 +268,13 @@ static void undefined_indices_are_null_and_say_why(void **state)
 	    reading_text(r, "/cells/0/outputs/1/note"),
 	    "all rows of the design failed, so there are no indices; without the noise the variance may be 0, "
 	    "so all indices except the raw ones are missing or unreliable");
+	// each note has a name that programs can rely on
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/notes/0/name"), "constant");
+	assert_int_equal(reading_count(r, "/cells/0/outputs/1/notes"), 2);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/0/name"), "no_rows");
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/1/name"), "noise");
+	assert_string_equal(reading_text(r, "/cells/0/outputs/1/notes/0/text"),
+	                    "all rows of the design failed, so there are no indices");
 	reading_close(r);
 }
 
@@ -307,6 +317,10 @@ static void all_there_is_to_say_has_room(void **state)
 	const char *note = reading_text(r, "/cells/0/outputs/0/note");
 	assert_string_equal(strrchr(note, ';'), "; few rows hold most of the variance, so intervals are too "
 	                                        "narrow: 1200 rows or more are needed");
+	assert_int_equal(reading_count(r, "/cells/0/outputs/0/notes"), POUND_N_NOTES);
+	check_near(reading_number(r, "/cells/0/outputs/0/notes/%d/rows_needed", POUND_NOTE_FEW_DECIDE), 1200, 0);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/notes/%d/name", POUND_NOTE_FEW_DECIDE),
+	                    "few_decide");
 	reading_close(r);
 }
 
@@ -468,6 +482,45 @@ static void a_result_says_why_its_design_grew_no_further(void **state)
 	free(document);
 }
 
+/* The note on errors of an output whose widest interval may be due to few signals. */
+static void check_note(double excitation, double low, const char *dominant, const char *note)
+{
+	struct pound_estimate estimates[ESTIMATES];
+	struct pound_indices indices[4];
+	for (int o = 0; o < 4; o++) {
+		indices_fill(&indices[o], estimates, 10);
+		indices[o].accuracy =
+		    (struct pound_accuracy){.errors = {0.5, excitation, 1e-6, 0}, .excitation_low = low};
+		indices[o].accuracy.inputs[1].total_half[3] = 0.5;
+	}
+	struct pound_cell cells[2] = {{.indices = indices}, {.indices = indices + 2}};
+	struct pound_result result = {.n_cells = 2, .cells = cells};
+	struct reading *r = result_of(study_documents_sensitivity, &result);
+	const char *got = reading_text(r, "/cells/0/outputs/0/accuracy/dominant");
+	assert_true(dominant ? got && strcmp(got, dominant) == 0 : !got);
+	assert_string_equal(reading_text(r, "/cells/0/outputs/0/accuracy/note"), note);
+	check_near(reading_number(r, "/cells/0/outputs/0/accuracy/errors/excitation_low"), low, 0);
+	check_near(reading_number(r, "/accuracy/errors/excitation_low"), low, 0);
+	reading_close(r);
+}
+
+static void few_signals_are_named_only_if_they_surely_make_the_interval(void **state)
+{
+	(void)state;
+	check_note(
+	    0.5, 0.4, "excitation",
+	    "The number of signals is the largest source of error: their noise makes up at least 0.4 of the "
+	    "largest half-width of an interval, of ST of /oscillators/1/mass_kg.");
+	check_note(
+	    0.5, 0.25, NULL,
+	    "Whether more rows or more signals would narrow the widest interval cannot be told apart with so "
+	    "few signals: their noise makes up between 0.25 and 0.5 of its half-width of 0.5, of ST of "
+	    "/oscillators/1/mass_kg; design.signals = auto finds out.");
+	check_note(0.25, 0.25, "sampling",
+	           "The number of rows is the largest source of error: the largest half-width of an interval is "
+	           "0.5, of ST of /oscillators/1/mass_kg.");
+}
+
 // an output whose interval grows with the rows, and one whose interval shrinks and is the narrower
 #define WIDENING(half)                                                                            \
 	"{\"cells\": [{\"outputs\": [{\"name\": \"impulse\", \"accuracy\": {\"rows_to_halve\": 4000," \
@@ -482,14 +535,14 @@ static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(
 		const char *json, *size, *narrower;
 	} cases[] = {
 	    {WIDENING("0.21"),
-	     "The widest 95 % interval is +-0.21, of ST of input f_2, output impulse; 4000 rows would halve its "
-	     "width.",
+	     "The widest 95 % interval is +-0.21, of ST of input f_2, output impulse; about 4000 rows would "
+	     "halve its width.",
 	     "With 250 rows it was +-0.09, narrower but not better: a few rare rows hold much of the variance, "
 	     "and so few rows may not contain them. Quote the interval of 1000 rows."},
 	    // less than a tenth wider may be chance
 	    {WIDENING("0.095"),
-	     "The widest 95 % interval is +-0.095, of ST of input f_2, output impulse; 4000 rows would halve its "
-	     "width.",
+	     "The widest 95 % interval is +-0.095, of ST of input f_2, output impulse; about 4000 rows would "
+	     "halve its width.",
 	     ""},
 	    {WIDENING("0.05"), "The widest 95 % interval is +-0.08, of ST of input f_2, output force.", ""},
 	    // stories have the same output name
@@ -512,7 +565,8 @@ static void the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one(
 	}
 }
 
-CHECK_MAIN(cmocka_unit_test(the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one),
+CHECK_MAIN(cmocka_unit_test(few_signals_are_named_only_if_they_surely_make_the_interval),
+           cmocka_unit_test(the_widest_interval_is_named_and_why_fewer_rows_have_a_narrower_one),
            cmocka_unit_test(points_that_do_not_fill_their_nets_are_noted),
            cmocka_unit_test(a_result_says_why_its_design_grew_no_further),
            cmocka_unit_test(a_response_is_written_whole),
