@@ -65,7 +65,7 @@ struct pound_given {
 	X(POUND_GIVEN_FIRST_UNKNOWN,                                                      \
 	  "S1 cannot be estimated: no polynomial fits, and the samples are not random")   \
 	X(POUND_GIVEN_FEW_DECIDE,                                                         \
-	  "few samples hold most of the variance, so intervals may be too narrow: use more samples") \
+	  "few samples hold most of the variance: intervals may be too narrow, and ST and S2 are left out, because a polynomial fits such samples best where the decisive ones are missing; use more samples") \
 	X(POUND_GIVEN_LOGARITHM,                                                          \
 	  "all values of the output are positive: indices of its logarithm need fewer samples")
 // clang-format on

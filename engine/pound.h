@@ -10,7 +10,7 @@
 #include "engine/result.h"
 #include "engine/study.h"
 
-#define POUND_VERSION "0.23.0"
+#define POUND_VERSION "0.24.0"
 
 /* The computation of one study; owns all its memory.  The study must outlive the run.
  *

@@ -95,7 +95,7 @@ static enum pound_status source_make(struct server *server, struct partial_sourc
                                      int rows, struct partial_result *made)
 {
 	const double start = stored_run_clock();
-	*made = (struct partial_result){.id = id, .rows = rows};
+	*made = (struct partial_result){.id = id, .rows = rows, .ended = source->ended};
 	pound_run_rows_take(source->run, rows);
 	pound_run_rows_complete(source->run, source->rows_done);
 	// one thread for all rows, of which its CPU time is the time that it took
@@ -167,12 +167,12 @@ static void want(struct partial_maker *maker, int64_t id)
 
 /* Test     service_growth: the_first_results_so_far_of_a_large_study_are_made_of_few_rows */
 enum pound_status partial_maker_soon(struct partial_maker *maker, struct partial_source *source, int64_t id,
-                                     bool ended, struct partial_result *result)
+                                     struct partial_result *result)
 {
 	const int done = source->rows_done, quick = pound_run_rows_quick(source->run),
-	          rows = ended || done < quick ? done : quick;
+	          rows = source->ended || done < quick ? done : quick;
 	enum pound_status status = POUND_OK;
-	if (!result->body || result->rows < rows) {
+	if (!result->body || result->rows < rows || (source->ended && !result->ended)) {
 		if (rows > quick)
 			setpriority(PRIO_PROCESS, (id_t)gettid(), MAKER_NICENESS);
 		free(result->body);

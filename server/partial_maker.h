@@ -21,6 +21,7 @@ struct partial_source {
 	const struct pound_study *study;
 	struct pound_run *run;
 	int rows_done;  /* 0: none, or the study is not sampled */
+	bool ended;     /* the study has failed or was cancelled; set by the caller */
 	int n_reducers; /* threads that may reduce at once */
 };
 
@@ -46,7 +47,7 @@ bool partial_maker_start(struct partial_maker *maker, struct server *server); /*
 /* A result for a request: the kept one in `result`, or one of so many of the complete rows, at least one, as take little time; of
  * all of them if the study has ended.  Its body is on the heap; NULL: a status says why, or out of memory. */
 enum pound_status partial_maker_soon(struct partial_maker *maker, struct partial_source *source, int64_t id,
-                                     bool ended, struct partial_result *result);
+                                     struct partial_result *result);
 bool partial_maker_stop(
     struct partial_maker *maker); /* false: it did not end in time, and may still use memory */
 

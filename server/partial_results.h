@@ -12,6 +12,7 @@ enum { PARTIAL_RESULTS = 8 };
 struct partial_result {
 	int64_t id; /* of the study; 0: none */
 	int rows;   /* of the design, from which it was made */
+	bool ended; /* of all complete rows of a study that goes on no more */
 	char *body; /* (length) bytes of JSON */
 	size_t length;
 	double until; /* [s] monotonic, until when it is fresh */

@@ -324,14 +324,16 @@ static struct reply so_far(struct request *request, int retry_after, bool ended,
 	struct partial_result last;
 	struct partial_source source;
 	struct reply reply;
-	if (partial_results_take(&server->partials, request->id, &last)) {
+	// after the end of a study, only a result of all its complete rows will do
+	if (partial_results_take(&server->partials, request->id, &last) && (!ended || last.ended)) {
 		*rows = last.rows;
 		return made("application/json", last.body, last.length);
 	}
 	const char *error = partial_source_open(server, request->id, request->unwanted, &source);
+	source.ended = ended;
 	if (!error && source.rows_done > 0) {
 		const enum pound_status status =
-		    partial_maker_soon(&server->partial_maker, &source, request->id, ended, &last);
+		    partial_maker_soon(&server->partial_maker, &source, request->id, &last);
 		const bool passing = !status || status == POUND_NOMEM || status == POUND_STOPPED;
 		*rows = last.rows;
 		reply = last.body ? made("application/json", last.body, last.length)

@@ -369,12 +369,14 @@ static void first_fill(const struct pound_rows *rows, const struct space *s, con
 	}
 }
 
-/* ST and S2 by the polynomial; undefined if its R2 is too small. */
+/* ST and S2 by the polynomial; undefined if its R2 is too small, or few samples decide: samples that lack the decisive ones fit
+ * best, and their ST is too small. */
 static void others_fill(const struct pound_given *given, const struct pound_polynomial *p,
                         struct pound_given_indices *indices)
 {
 	const int d = given->n_inputs;
-	const bool fits = p && indices->explained >= EXPLAINED_LEAST;
+	const bool explained = p && indices->explained >= EXPLAINED_LEAST;
+	const bool fits = explained && !(indices->notes >> POUND_GIVEN_FEW_DECIDE & 1);
 	for (int j = 0; j < d; j++)
 		indices->total[j] = fits ? widened(p->value[d + j], indices->explained) : UNKNOWN;
 	indices->n_second = 0;
@@ -382,7 +384,7 @@ static void others_fill(const struct pound_given *given, const struct pound_poly
 		for (int j = i + 1; j < d; j++, indices->n_second++)
 			indices->second[indices->n_second] = (struct pound_set_index){
 			    1u << i | 1u << j, widened(p->value[2 * d + indices->n_second], indices->explained)};
-	if (p && !fits)
+	if (p && !explained)
 		indices->notes |= 1u << POUND_GIVEN_UNEXPLAINED | (unsigned)!given->noise_known
 		                                                      << POUND_GIVEN_NOISE_LIMITS;
 }
@@ -492,12 +494,12 @@ void pound_given_estimate(const struct pound_given *given, const struct pound_gi
 		indices->terms = fitted.terms_of[fitted.chosen];
 	}
 	const struct pound_polynomial *p = independent && !by_factorial ? &fitted : NULL;
+	if (!factorial && few_decide(&s, given->n_rows))
+		indices->notes |= 1u << POUND_GIVEN_FEW_DECIDE | (unsigned)positive(output->y, given->n_rows)
+		                                                     << POUND_GIVEN_LOGARITHM;
 	if (!by_factorial)
 		others_fill(given, p, indices);
 	if (!factorial) {
-		if (few_decide(&s, given->n_rows))
-			indices->notes |= 1u << POUND_GIVEN_FEW_DECIDE | (unsigned)positive(output->y, given->n_rows)
-			                                                     << POUND_GIVEN_LOGARITHM;
 		first_fill(&rows, &s, p, neighbors, indices);
 	} else if (!by_factorial)
 		pound_factorial_indices(given, output, s.rest, indices);

@@ -196,9 +196,9 @@ void result_design(struct writer *w, const struct pound_study *asked, const stru
 		writer_whole(w, "rows_done", all ? result->rows : result->rows_done);
 		writer_text(
 		    w, "note",
-		    all ? "result of the rows completed so far, not of the whole study"
-		        : "result of the first rows, so that it comes at once; the result of all rows completed "
-		          "so far is being made: ask again in a few seconds");
+		    all ? "result of the rows that were complete when it was made, not of the whole study"
+		        : "result of the first rows, so that it comes at once; the result of all complete rows "
+		          "is being made: ask again in a few seconds");
 		writer_end(w);
 	} else if (result->n_looks || result->split.signals) {
 		writer_object(w, "stopping", WRITER_LINES);
