@@ -102,7 +102,7 @@ static int serve(struct server *server, const sigset_t *signals)
 		ended = daemon_stop(server);
 	}
 	ended &= partial_maker_stop(&server->partial_maker);
-	ended &= work_stop(server->work);
+	ended &= work_stop(server->work, ended);
 	// accepted studies are on the disk: the next start resumes them as after a crash
 	if (!ended)
 		store_stop(server->store, STORE_WAIT_MS);

@@ -1,12 +1,12 @@
 /* A partial result is fresh for SHARE times as long as it took to make: repeated requests then use at most about a twentieth of one
- * core for new ones, and get the others at once.  Results larger than a few MB are not kept. */
+ * core for new ones, and get the others at once. */
 #include "server/partial_results.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-enum { SHARE = 20, BYTES_MAX = 4 << 20 };
+enum { SHARE = 20, BYTES_MAX = 128 << 20 /* of all results kept; a larger one is not kept */ };
 
 static double now_s(void)
 {
@@ -33,6 +33,25 @@ bool partial_results_take(struct partial_results *results, int64_t id, struct pa
 	return copy->body && now_s() <= copy->until;
 }
 
+/* Forgets other results than `kept`, those that expire first, until all take at most BYTES_MAX bytes. */
+static void shrink(struct partial_results *results, const struct partial_result *kept)
+{
+	for (;;) {
+		struct partial_result *first = NULL;
+		size_t bytes = 0;
+		for (int i = 0; i < PARTIAL_RESULTS; i++) {
+			struct partial_result *r = &results->result[i];
+			bytes += r->body ? r->length : 0;
+			if (r != kept && r->body && (!first || r->until < first->until))
+				first = r;
+		}
+		if (bytes <= BYTES_MAX || !first)
+			return;
+		free(first->body);
+		*first = (struct partial_result){0};
+	}
+}
+
 /* Replaces the study's last partial result, else the one that expires first. */
 void partial_results_give(struct partial_results *results, const struct partial_result *made, double took)
 {
@@ -54,6 +73,7 @@ void partial_results_give(struct partial_results *results, const struct partial_
 		*into = *made;
 		into->body = copy;
 		into->until = now_s() + SHARE * took;
+		shrink(results, into);
 	}
 	pthread_mutex_unlock(&results->lock);
 	if (!later)

@@ -611,7 +611,7 @@ struct work *work_start(struct store *store, int n_workers, double time_max, dou
 		return work;
 	log_line("cannot start more than %d of %d workers: the system gives no more threads", started, n_workers);
 	work->n_workers = started;
-	work_stop(work);
+	work_stop(work, true);
 	return NULL;
 }
 
@@ -646,11 +646,12 @@ void work_drop(struct work *work, int64_t id)
 
 /* Stops the workers; studies that were running continue at the next start.
  *
+ * Given    alone   no thread of another part can use work any more, so that it may be freed
  * Returns  value   false: a worker is in an operation that cannot be interrupted, such as a write to a slow disk, so work
  *                  and its store must not be freed before the program exits
  * Test     service_stop: it_ends_soon_whatever_runs_and_so_does_a_cancelled_study
  */
-bool work_stop(struct work *work)
+bool work_stop(struct work *work, bool alone)
 {
 	pthread_mutex_lock(&work->lock);
 	work->stopping = true;
@@ -673,8 +674,12 @@ bool work_stop(struct work *work)
 		return false;
 	if (work->watched)
 		pthread_join(work->watch, NULL);
+	pthread_mutex_lock(&work->lock);
+	bool viewed = false;
 	TAILQ_FOREACH(job, &work->jobs, others)
-	if (job->n_views > 0)
+	viewed |= job->n_views > 0;
+	pthread_mutex_unlock(&work->lock);
+	if (viewed || !alone)
 		return false;
 	while ((job = TAILQ_FIRST(&work->jobs)))
 		drop(work, job);

@@ -35,7 +35,7 @@ void work_unview(struct work_view *view);
 
 void work_wake(struct work *work);             /* a study was queued */
 void work_drop(struct work *work, int64_t id); /* a study was cancelled or deleted */
-bool work_stop(
-    struct work *work); /* unfinished studies stay in the store; false: a worker did not exit in time */
+/* Unfinished studies stay in the store; `alone`: nobody else uses work, so it is freed; false: it is not, and may be in use. */
+bool work_stop(struct work *work, bool alone);
 
 #endif

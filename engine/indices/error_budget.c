@@ -286,8 +286,10 @@ enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE], 
 
 bool pound_accuracy_undecided(const double errors[POUND_ERROR_NONE], double excitation_low)
 {
+	const struct split s = split_of(errors, excitation_low);
 	return pound_accuracy_dominant(errors, excitation_low) == POUND_ERROR_NONE &&
-	       known(errors[POUND_ERROR_SAMPLING]) > split_of(errors, excitation_low).others;
+	       known(errors[POUND_ERROR_SAMPLING]) > s.others && s.noise_high > s.rows_low &&
+	       s.rows_high > s.noise_low;
 }
 
 /* Largest contribution of the noise of few signals to an interval, which includes it: the smaller of an upper estimate for

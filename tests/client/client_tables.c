@@ -293,7 +293,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 	static const char *const lines[] = {
 	    "server listens on http://",
 	    "The widest 95 % interval is +-0.23, of ST of input f_e, output impulse.\n",
-	    "\nWith 500 rows it was +-0.062, narrower but not better: a few rare rows hold much\n",
+	    "\nWith 500 rows it was +-0.074, narrower but not better: a few rare rows hold much\n",
 	    "Quote the interval of\n1000 rows.\n", "\nReport with figures and tables, for a browser: "};
 	(void)state;
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
@@ -311,7 +311,7 @@ static void the_papers_study_ends_in_one_screen_and_a_report(void **state)
 	char *report = program_file(path, NULL);
 	assert_non_null(report);
 	assert_non_null(strstr(report, "<svg"));
-	assert_non_null(strstr(report, "+-0.062, narrower but not better"));
+	assert_non_null(strstr(report, "+-0.074, narrower but not better"));
 	free(report);
 	program_free(&run);
 }

@@ -68,7 +68,7 @@ static void serve(const char *path)
 		usleep(1000);
 	}
 	if (work)
-		work_stop(work);
+		work_stop(work, true);
 	if (store)
 		store_close(store);
 	_exit(work ? 0 : 1);
