@@ -444,7 +444,8 @@ static char *intro_of(const struct summary *summary, bool both)
 	                          both || !summary->any[ST] ? "alone (S1)" : "", both ? " and " : "",
 	                          summary->any[ST] ? "with its interactions (ST)" : "");
 	if (*over)
-		text = command_append(text, ", lowest to highest over %s", over);
+		text = command_append(text, ", lowest to highest over %s%s", over,
+		                      summary->n_cells > 1 ? " that have the output" : "");
 	free(over);
 	return command_append(text, "%s%s.", places ? " (number in parentheses)" : "",
 	                      values ? "; +-: 95 % interval" : "");
