@@ -263,7 +263,7 @@ static int bars(const struct summary *summary, bool print)
 	int width = 0, lines = 2;
 	if (print)
 		printf("Fraction of an output's variance due to an input alone (S1), with interactions\n"
-		       "(ST), and to the randomness of %s (noise); +-: 95 %% interval.\n",
+		       "(ST), and to the randomness of %s (noise); +-: 95 %% half-width.\n",
 		       own ? "replicates" : "ground motions");
 	for (int j = 0; j < summary->n_inputs; j++) {
 		const int n = table_width(summary->inputs[j]);
@@ -448,7 +448,7 @@ static char *intro_of(const struct summary *summary, bool both)
 		                      summary->n_cells > 1 ? " that have the output" : "");
 	free(over);
 	return command_append(text, "%s%s.", places ? " (number in parentheses)" : "",
-	                      values ? "; +-: 95 % interval" : "");
+	                      values ? "; +-: half-width of the 95 % interval" : "");
 }
 
 /* Sentence with the number of outputs whose intervals are too narrow; the caller frees it.  NULL: none. */
