@@ -272,7 +272,7 @@ static void what_there_is_to_say_about_a_design_is_said_on_stderr(void **state)
 	program_expect(&uneven, 0);
 	program_expect(&run, 2);
 	assert_string_equal(
-	    grown.err, "pound: note: the design grows: these are its first 128 rows; a run takes up to 2048\n");
+	    grown.err, "pound: note: the design grows: these are its first 128 rows; a run takes up to 8192\n");
 	int lines = 0;
 	for (const char *c = grown.out; *c; c++)
 		lines += *c == '\n';
