@@ -187,7 +187,7 @@ const char *pound_error_name(int row);
 /* The error certainly larger than the sum of all others.  Unknown errors (NAN) count as 0; excitation_low is the least that the
  * noise of few signals adds to the widest interval. */
 enum pound_error pound_accuracy_dominant(const double errors[POUND_ERROR_NONE], double excitation_low);
-/* Whether the widest interval exceeds the other errors, but not known is if by few rows or by few signals. */
+/* Whether the widest interval exceeds the other errors, but its bounds do not show whether few rows or few signals cause it. */
 bool pound_accuracy_undecided(const double errors[POUND_ERROR_NONE], double excitation_low);
 
 /* A number known by its bounds; NAN: unknown. */

@@ -190,7 +190,7 @@ static double two_to(double x)
 	return high;
 }
 
-/* Standard error of the slope of a line through n points.
+/* Half of the 95 % interval of the slope of a line through n points.
  *
  * Given    residual   -       sum of squared residuals;  n > 2
  *          xx         -       sum of squares of the abscissas about their mean

@@ -81,17 +81,17 @@ static void pair_fill(const struct pound_noise_part *part, int row, const double
 {
 	const struct pound_rows *rows = part->rows;
 	const int n = rows->n_samples, d = rows->n_inputs;
-	double y[POUND_SAMPLES_MAX], apart[POUND_SAMPLES_MAX], noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
+	double y[POUND_SAMPLES_MAX], difference[POUND_SAMPLES_MAX], noise[POUND_SAMPLES_MAX * POUND_SAMPLES_MAX];
 	double estimate[2 * POUND_CLOSED_COLUMNS_MAX];
 	static const double zeros[POUND_CLOSED_COLUMNS_MAX];
 	for (int p = 0; p < n; p++) {
 		const double first = of[p * SETS + pair[0]], second = of[p * SETS + pair[1]];
 		y[p] = rows->y[(size_t)row * n + p] + 0.5 * (first + second);
-		apart[p] = 0.5 * (first - second);
+		difference[p] = 0.5 * (first - second);
 	}
 	for (int p = 0; p < n; p++)
 		for (int q = 0; q < n; q++)
-			noise[p * n + q] = apart[p] * apart[q];
+			noise[p * n + q] = difference[p] * difference[q];
 	pound_closed_row(part->closed, y, control, noise, estimate);
 	for (int j = 0; j < d; j++) {
 		value[j] = influence(&part->results->first_influence[j], estimate);

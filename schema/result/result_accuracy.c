@@ -12,7 +12,7 @@ struct errors {
 	double of[POUND_ERROR_NONE], excitation_low;
 };
 
-/* Writes that few rows and few signals cannot be told apart as sources of the widest interval, and how to find out. */
+/* Writes that few rows and few signals cannot be distinguished as sources of the widest interval, and how to find out. */
 static void write_undecided(struct writer *w, const struct pound_study *study, const struct errors *errors,
                             const char *index)
 {
@@ -23,7 +23,7 @@ static void write_undecided(struct writer *w, const struct pound_study *study, c
 		snprintf(least, sizeof least, "%.2g", errors->excitation_low);
 	snprintf(
 	    note, sizeof note,
-	    "Whether more rows or more %s would narrow the widest interval cannot be told apart with so few %s: "
+	    "Whether more rows or more %s would narrow the widest interval cannot be decided with so few %s: "
 	    "their noise makes up between %s and %.2g of its half-width of %.2g%s%s%s.",
 	    noise, noise, least, high, errors->of[POUND_ERROR_SAMPLING], *index ? ", of " : "", index,
 	    study->elsewhere ? "" : "; design.signals = auto finds out");

@@ -98,7 +98,7 @@ static void the_bounds_hold_what_noise_adds_to_an_interval(void **state)
 				const struct summary s = summary_of(index, range, which, j);
 				// 95 of 100, of which a binomial number has a standard deviation of 2.2
 				assert_in_range(s.inside, 88, DRAWS);
-				// nor are the bounds so far apart that they say nothing
+				// nor are the bounds so wide that they say nothing
 				assert_true(s.low > 0.4 * s.truth);
 			}
 		free(index), free(range);

@@ -511,11 +511,10 @@ static void few_signals_are_named_only_if_they_surely_make_the_interval(void **s
 	    0.5, 0.4, "excitation",
 	    "The number of signals is the largest source of error: their noise makes up at least 0.4 of the "
 	    "largest half-width of an interval, of ST of /oscillators/1/mass_kg.");
-	check_note(
-	    0.5, 0.25, NULL,
-	    "Whether more rows or more signals would narrow the widest interval cannot be told apart with so "
-	    "few signals: their noise makes up between 0.25 and 0.5 of its half-width of 0.5, of ST of "
-	    "/oscillators/1/mass_kg; design.signals = auto finds out.");
+	check_note(0.5, 0.25, NULL,
+	           "Whether more rows or more signals would narrow the widest interval cannot be decided with so "
+	           "few signals: their noise makes up between 0.25 and 0.5 of its half-width of 0.5, of ST of "
+	           "/oscillators/1/mass_kg; design.signals = auto finds out.");
 	check_note(0.25, 0.25, "sampling",
 	           "The number of rows is the largest source of error: the largest half-width of an interval is "
 	           "0.5, of ST of /oscillators/1/mass_kg.");
